@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "kernel/correspondence_set.h"
+#include "kernel/rigid_transform.h"
+
+namespace corral {
+
+/// Rigidity ratio of two matches from the distance of their points on either surface: min(a/b, b/a), in [0, 1]; 0 if a
+/// distance is 0. 1 means the pair moves rigidly.
+///
+/// Source    [yang2017evaluation] eq. (3), [buch2014search] eq. (3).
+inline double rigidity_ratio(double source_distance, double target_distance) {
+  if (!(source_distance > 0) || !(target_distance > 0)) return 0;
+  return std::min(source_distance / target_distance, target_distance / source_distance);
+}
+
+/// The two distances between rows i and j, in mesh units.
+struct PairDistances {
+  double source, target;
+};
+inline PairDistances pair_distances(const CorrespondenceSet& matches, int i, int j) {
+  return {(matches.source_points.row(i) - matches.source_points.row(j)).norm(),
+          (matches.target_points.row(i) - matches.target_points.row(j)).norm()};
+}
+
+/// Distinctiveness of each match, 1 - d1/d2: 0 where the second nearest feature is absent or coincides (d2 <= 0).
+///
+/// Source    [yang2017evaluation] eq. (2), [lowe2004distinctive]. Needs both feature distances.
+std::vector<double> ratio_scores(const CorrespondenceSet& matches);
+
+/// Lowe's test on one match: d2 > 0 and d1 <= maximum_ratio * d2, that is 1 - d1/d2 >= 1 - maximum_ratio.
+inline bool passes_ratio_test(double d1, double d2, double maximum_ratio) { return d2 > 0 && d1 / d2 <= maximum_ratio; }
+
+/// The rigid motion that one match alone proposes by its two frames: R = L'^T L, t = p' - R p.
+RigidTransform transform_from_frames(const CorrespondenceSet& matches, int row);
+
+}  // namespace corral

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "kernel/correspondence_set.h"
+#include "kernel/rigid_transform.h"
+#include "kernel/types.h"
+
+namespace corral {
+
+/// What a grouper answers.
+struct GroupingResult {
+  Indices selected;            ///< rows it keeps, strictly ascending; may be empty
+  std::vector<double> scores;  ///< one per match, larger is better; empty where the method scores no matches
+  std::optional<RigidTransform> target_from_source;  ///< the method's own pose; absent where it makes none
+};
+
+/// A grouper with its options bound: a pure function of the table.
+using GroupFunction = std::function<GroupingResult(const CorrespondenceSet&)>;
+
+}  // namespace corral

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "grouping/registry.h"
+
+#include "grouping/geometric_consistency.h"
+#include "grouping/hough_voting.h"
+#include "grouping/nearest_neighbor_ratio.h"
+#include "grouping/ransac.h"
+#include "grouping/search_of_inliers.h"
+#include "grouping/similarity_score.h"
+#include "grouping/spectral.h"
+
+namespace corral {
+namespace {
+
+template <class Options>
+Grouper entry(const char* name, const char* title, const char* principle, const char* citation,
+              GroupingResult (*method)(const CorrespondenceSet&, const Options&)) {
+  const auto configure = [who = std::string(name), method](const OptionOverrides& overrides) {
+    const Options options = parse_options<Options>(overrides, who);
+    const auto group = [method, options](const CorrespondenceSet& matches) { return method(matches, options); };
+    return ConfiguredGrouper{group, describe_options(options)};
+  };
+  return {name, title, principle, citation, describe_options(Options{}), configure};
+}
+
+}  // namespace
+
+const std::vector<Grouper>& groupers() {
+  static const std::vector<Grouper> table = {
+      entry("ss", "Similarity score (SS)", "features alike, Otsu's threshold", "yang2017evaluation",
+            group_by_similarity_score),
+      entry("nnsr", "Nearest-neighbour similarity ratio (NNSR)", "best feature much better than the second",
+            "lowe2004distinctive", group_by_nearest_neighbor_ratio),
+      entry("ransac", "Random sample consensus (RANSAC)", "agreement with the best pose of random triples",
+            "fischler1981random", group_by_ransac),
+      entry("st", "Spectral technique (ST)", "principal eigenvector of the compatibility graph", "leordeanu2005spectral",
+            group_by_spectral),
+      entry("gc", "Geometric consistency (GC)", "largest set that keeps its distances to one seed", "chen2007consistency",
+            group_by_geometric_consistency),
+      entry("hough", "3D Hough voting (3DHV)", "frames carry the centroid to the same place", "tombari2010hough",
+            group_by_hough_voting),
+      entry("si", "Search of inliers (SI)", "votes of near and of distinctive matches", "buch2014search",
+            group_by_search_of_inliers),
+  };
+  return table;
+}
+
+const Grouper& find_grouper(const std::string& name) {
+  std::string known;
+  for (const Grouper& grouper : groupers()) {
+    if (grouper.name == name) return grouper;
+    known += (known.empty() ? "" : "|") + grouper.name;
+  }
+  throw InvalidInput("find_grouper", "method", "'" + name + "'", known);
+}
+
+}  // namespace corral

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "grouping/grouper.h"
+#include "grouping/options.h"
+
+namespace corral {
+
+struct SpectralOptions {
+  double similarity = 0.6;
+  bool once = false;
+  bool weighted = false;
+
+  template <class Self, class Visitor>
+  static void visit_fields(Self& self, Visitor&& visit) {
+    visit(OptionField{"similarity", "", "0.6", "rigidity ratio from which two matches are compatible", above_up_to(0, 1)},
+          self.similarity);
+    visit(OptionField{"once", "", "false", "one eigenvector of the whole graph instead of one per accepted match"},
+          self.once);
+    visit(OptionField{"weighted", "", "", "edges weigh their rigidity ratio instead of 1"}, self.weighted);
+  }
+};
+
+/// Spectral technique (ST): greedy choice by the principal eigenvector of the graph of compatible matches.
+///
+///   M_ij = [ r(i,j) >= similarity ],  M_ii = 1
+///   repeat   x = principal eigenvector of M over the matches alive;  accept i = argmax x;
+///            remove i and every j with r(i,j) < similarity
+///   until    nobody is alive, or max x <= 1e-9
+///
+/// once      x is computed for the full graph only.      weighted   M_ij = r(i,j) where r(i,j) >= similarity.
+/// Source    [leordeanu2005spectral]; form and value [yang2017evaluation] section 2.4, Table 1.
+/// Reads     source_points, target_points.
+/// Returns   selected only.
+/// Cost      O(M^2) time for each accepted match and matrix product, O(M^2) memory. Deterministic.
+/// Throws    InvalidInput: option out of range, ragged or non-finite columns.
+/// Departs   The eigenvector is the converged one of definition (see principal_eigenvector.h), not that of a fixed number of
+///           rounds. Entries within 1e-9 of the maximum are ties: the lowest row. Conflict means incompatible (the paper
+///           leaves it open). Two equally heavy parts: the one with the lowest row first. No compatible pair: nothing.
+GroupingResult group_by_spectral(const CorrespondenceSet& matches, const SpectralOptions& options = {});
+
+}  // namespace corral

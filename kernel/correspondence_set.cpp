@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "kernel/correspondence_set.h"
+
+#include <cmath>
+
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+void check_length(const char* name, std::size_t length, int expected, bool optional) {
+  if (length == static_cast<std::size_t>(expected) || (optional && length == 0)) return;
+  throw InvalidInput("table of matches", std::string("column ") + name, std::to_string(length) + " rows long",
+                     std::to_string(expected) + " rows" + (optional ? " or none" : ""));
+}
+
+template <class Matrix>
+void check_finite(const char* name, const Matrix& values) {
+  for (Eigen::Index row = 0; row < values.rows(); ++row)
+    for (Eigen::Index column = 0; column < values.cols(); ++column)
+      if (!std::isfinite(values(row, column)))
+        throw InvalidInput("table of matches", std::string(name) + " of row " + std::to_string(row),
+                           values(row, column), "a finite number");
+}
+
+void check_frames(const char* name, const LocalReferenceFrames& frames) {
+  for (std::size_t row = 0; row < frames.size(); ++row)
+    if (!frames[row].allFinite())
+      throw InvalidInput("table of matches", std::string(name) + " of row " + std::to_string(row), "not finite",
+                         "nine finite numbers");
+}
+
+}  // namespace
+
+Eigen::Vector3d CorrespondenceSet::source_centroid_or_mean() const {
+  if (source_centroid) return *source_centroid;
+  if (size() == 0) return Eigen::Vector3d::Zero();
+  return source_points.colwise().mean().transpose();
+}
+
+void CorrespondenceSet::validate() const {
+  const int rows = size();
+  check_length("target_points", static_cast<std::size_t>(target_points.rows()), rows, false);
+  check_length("source_frames", source_frames.size(), rows, true);
+  check_length("target_frames", target_frames.size(), rows, true);
+  check_length("source_keypoints", source_keypoints.size(), rows, true);
+  check_length("target_keypoints", target_keypoints.size(), rows, true);
+  check_length("feature_distance", static_cast<std::size_t>(feature_distance.size()), rows, true);
+  check_length("second_feature_distance", static_cast<std::size_t>(second_feature_distance.size()), rows, true);
+  if (!(resolution > 0) || !std::isfinite(resolution))
+    throw InvalidInput("table of matches", "resolution", resolution, "a finite length above zero");
+  check_finite("source_points", source_points);
+  check_finite("target_points", target_points);
+  check_finite("feature_distance", feature_distance);
+  check_finite("second_feature_distance", second_feature_distance);
+  check_frames("source_frames", source_frames);
+  check_frames("target_frames", target_frames);
+  if (source_centroid) check_finite("source_centroid", Eigen::Matrix<double, 1, 3>(source_centroid->transpose()));
+}
+
+void require_columns(const CorrespondenceSet& matches, const std::string& who, std::initializer_list<Column> columns) {
+  matches.validate();
+  if (matches.size() == 0) return;
+  for (const Column column : columns) {
+    const char* name = "";
+    bool absent = false;
+    switch (column) {
+      case Column::SourceFrames: name = "source_frames", absent = matches.source_frames.empty(); break;
+      case Column::TargetFrames: name = "target_frames", absent = matches.target_frames.empty(); break;
+      case Column::FeatureDistance: name = "feature_distance", absent = matches.feature_distance.size() == 0; break;
+      case Column::SecondFeatureDistance:
+        name = "second_feature_distance", absent = matches.second_feature_distance.size() == 0;
+        break;
+    }
+    if (absent) throw InvalidInput(who, std::string("column ") + name, "absent", "one value per match");
+  }
+}
+
+}  // namespace corral

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kernel/correspondence_set.h"
+#include "kernel/rigid_transform.h"
+
+namespace corral {
+
+/// Which matches are right: label i is true iff |T p_i - q_i| <= threshold, T the ground truth (inclusive).
+///
+/// Source    [yang2017evaluation] section 3.2, threshold 4 pr.
+/// Throws    InvalidInput: invalid table, or a threshold that is not finite and >= 0.
+std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
+                                double threshold_pr);
+
+/// Precision and recall of one selection; a ratio whose denominator is zero is absent, never 0.
+struct GroupingScore {
+  int matches = 0;
+  int selected = 0;
+  int correct = 0;       ///< selected and right
+  int true_matches = 0;  ///< right, selected or not
+  std::optional<double> precision;  ///< correct / selected
+  std::optional<double> recall;     ///< correct / true_matches
+  std::optional<double> f1;         ///< 2 correct / (selected + true_matches), the harmonic mean of the two
+};
+
+/// Throws    InvalidInput if a selected row is out of range or the rows do not ascend strictly.
+GroupingScore score_grouping(const std::vector<bool>& labels, const Indices& selected);
+
+/// Angle of estimate * truth^-1 in degrees, 0 .. 180; accurate near both ends (no arc cosine of a trace).
+double rotation_error_deg(const RigidTransform& estimate, const RigidTransform& truth);
+
+/// |t_estimate - t_truth| in pr.
+double translation_error_pr(const RigidTransform& estimate, const RigidTransform& truth, double resolution);
+
+/// How far an estimate carries points from where the truth carries them: |T_estimate x - T_truth x| in pr.
+struct PointError {
+  double rmse_pr = 0;  ///< root mean square over the points
+  double mean_pr = 0;  ///< mean over the points (what the field's published "RMSE" curves hold)
+};
+
+/// Over N points in the source (rows); absent if there are none.
+std::optional<PointError> point_error(const RigidTransform& estimate, const RigidTransform& truth, const Points& points,
+                                      double resolution);
+
+}  // namespace corral
