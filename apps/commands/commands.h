@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <stdexcept>
+
+#include "apps/match_pair.h"
+#include "grouping/registry.h"
+
+namespace corral {
+
+/// Exit statuses of the program.
+enum ExitStatus { kOk = 0, kOtherFailure = 1, kUsage = 2, kBadInput = 3, kPartial = 4 };
+
+/// The command line asks for what does not exist.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What the chosen subcommand will do; set while the command line is parsed, run afterwards. Returns the exit status.
+using Action = std::function<int()>;
+
+// Each adds one subcommand that sets `action`.
+void add_info(CLI::App& app, Action& action);
+void add_match(CLI::App& app, Action& action);
+void add_group(CLI::App& app, Action& action);
+void add_refine(CLI::App& app, Action& action);
+void add_score(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_groupers(CLI::App& app, Action& action);
+void add_perturb(CLI::App& app, Action& action);
+
+// Options that several subcommands have.
+void add_match_options(CLI::App& command, MatchSettings& settings);
+void check_usage(const MatchSettings& settings);  ///< throws UsageError
+
+/// The named method with "key=value" texts applied. Throws UsageError.
+ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings);
+
+}  // namespace corral

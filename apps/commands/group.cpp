@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// corral group: one grouper on a table of matches.
+#include "apps/commands/commands.h"
+#include "apps/report.h"
+#include "io/group_file.h"
+#include "io/matches_file.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::string matches, method, output;
+  std::vector<std::string> set;
+  int repeat = 1;
+  bool json = false;
+};
+
+int group(const Settings& settings) {
+  const ConfiguredGrouper grouper = configure_grouper(settings.method, settings.set);
+  if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
+  const CorrespondenceSet matches = read_matches(settings.matches);
+  const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
+  if (!settings.json || !settings.output.empty())
+    put(settings.output, group_text({matches.size(), timed.found.selected, timed.found.scores}));
+  if (settings.json)
+    put("", Json{{"method", settings.method},
+                 {"options", to_json(grouper.options)},
+                 {"matches", matches.size()},
+                 {"selected", timed.found.selected.size()},
+                 {"time_ms", timed.time_ms},
+                 {"repeat", settings.repeat}});
+  return kOk;
+}
+
+}  // namespace
+
+ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings) {
+  OptionOverrides overrides;
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0) throw UsageError("--set " + setting + ": expected key=value");
+    if (!overrides.emplace(setting.substr(0, equals), setting.substr(equals + 1)).second)
+      throw UsageError("--set " + setting + ": this key is set twice");
+  }
+  try {
+    return find_grouper(method).configure(overrides);
+  } catch (const InvalidInput& error) {
+    throw UsageError(error.what());
+  }
+}
+
+void add_group(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("group", "One grouper on a table of matches");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("matches", settings->matches, "Table of matches")->required();
+  command->add_option("-m,--method", settings->method, "ss, nnsr, ransac, st, gc, hough or si")->required();
+  command->add_option("--set", settings->set, "An option of the method as key=value; 'corral groupers' lists them")
+      ->expected(1)
+      ->take_all();
+  command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)");
+  command->add_option("--repeat", settings->repeat, "Timed calls; the median is reported")->capture_default_str();
+  command->add_flag("--json", settings->json, "Counts and time as JSON on standard output (the selection then needs -o)");
+  command->footer("Examples:\n  corral group matches.csv --method gc -o group.csv\n"
+                  "  corral group matches.csv --method ransac --set seed=7 --set iterations=1000 --json --repeat 10");
+  command->callback([settings, &action] { action = [settings] { return group(*settings); }; });
+}
+
+}  // namespace corral

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// corral info: what a mesh is, before anything is done with it.
+#include "apps/commands/commands.h"
+#include "apps/report.h"
+#include "io/mesh_file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+#include "kernel/surface/resolution.h"
+#include "kernel/surface/topology.h"
+
+namespace corral {
+namespace {
+
+struct MeshInfo {
+  std::string path;
+  int vertices = 0, faces = 0;
+  Topology topology;
+  std::optional<double> resolution;
+  Eigen::RowVector3d extent = Eigen::RowVector3d::Zero();
+  std::vector<std::string> warnings;
+};
+
+void add_warnings(MeshInfo& info) {
+  const auto warn = [&](int count, const std::string& text) {
+    if (count > 0) info.warnings.push_back(std::to_string(count) + " " + text);
+  };
+  if (info.faces == 0) info.warnings.push_back("no faces: a point cloud, its normals will be turned towards the origin");
+  warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
+  warn(info.topology.isolated_vertices, "vertices without a face");
+  warn(info.topology.degenerate_faces, "faces without area");
+  warn(info.topology.non_manifold_faces, "non-manifold faces");
+  if (!info.resolution) info.warnings.push_back("fewer than 2 distinct vertices: no resolution");
+}
+
+MeshInfo inspect(const std::string& path) {
+  const Mesh mesh = read_mesh(path);
+  MeshInfo info;
+  info.path = path;
+  info.vertices = static_cast<int>(mesh.vertices.rows());
+  info.faces = static_cast<int>(mesh.triangles.rows());
+  info.topology = inspect_topology(mesh);
+  if (info.vertices - info.topology.duplicate_vertices >= 2) info.resolution = point_resolution(mesh.vertices);
+  if (info.vertices > 0) info.extent = mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff();
+  add_warnings(info);
+  return info;
+}
+
+Json to_json(const MeshInfo& info) {
+  return {{"path", info.path},
+          {"vertices", info.vertices},
+          {"faces", info.faces},
+          {"components", info.topology.components},
+          {"boundary_edges", info.topology.boundary_edges},
+          {"boundary_loops", info.topology.boundary_loops},
+          {"duplicates", info.topology.duplicate_vertices},
+          {"isolated", info.topology.isolated_vertices},
+          {"degenerate_faces", info.topology.degenerate_faces},
+          {"non_manifold_faces", info.topology.non_manifold_faces},
+          {"resolution", json_or_null(info.resolution)},
+          {"mean_edge_length", info.topology.mean_edge_length},
+          {"extent", {info.extent(0), info.extent(1), info.extent(2)}},
+          {"diagonal", info.extent.norm()},
+          {"warnings", info.warnings}};
+}
+
+std::string to_text(const MeshInfo& info) {
+  using corral::to_text;
+  std::string text = info.path + "\n  vertices    " + std::to_string(info.vertices) + " (" +
+                     std::to_string(info.topology.duplicate_vertices) + " duplicates)\n  faces       " +
+                     std::to_string(info.faces) + " in " + std::to_string(info.topology.components) + " components\n" +
+                     "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges in " +
+                     std::to_string(info.topology.boundary_loops) + " loops\n  resolution  " +
+                     (info.resolution ? to_text(*info.resolution) : "-") + " mesh units per pr\n  mean edge   " +
+                     to_text(info.topology.mean_edge_length) + "\n  extent      " + to_text(info.extent(0)) + " x " +
+                     to_text(info.extent(1)) + " x " + to_text(info.extent(2)) + "\n";
+  for (const std::string& warning : info.warnings) text += "  warning     " + warning + "\n";
+  return text;
+}
+
+struct Settings {
+  std::vector<std::string> meshes;
+  bool json = false;
+};
+
+int info(const Settings& settings) {
+  Json list = Json::array();
+  std::string text;
+  std::size_t failed = 0;
+  for (const std::string& path : settings.meshes) {
+    try {
+      const MeshInfo about = inspect(path);
+      list.push_back(to_json(about));
+      text += to_text(about);
+    } catch (const std::runtime_error& error) {
+      ++failed;
+      list.push_back({{"path", path}, {"error", error.what()}});
+      say(std::string("corral: ") + error.what());
+    }
+  }
+  if (settings.json) put("", list);
+  else put("", text);
+  return failed == 0 ? kOk : failed == settings.meshes.size() ? kBadInput : kPartial;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("info", "What a mesh is: counts, components, boundary, resolution, warnings");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("mesh", settings->meshes, "Mesh or point cloud (.ply, .off, .obj)")->required();
+  command->add_flag("--json", settings->json, "A JSON array, one object per mesh");
+  command->footer("Examples:\n  corral info bunny.off\n  corral info --json scans/*.ply");
+  command->callback([settings, &action] { action = [settings] { return info(*settings); }; });
+}
+
+}  // namespace corral

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// corral match: from two meshes to a table of matches.
+#include "apps/commands/commands.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+#include "io/matches_file.h"
+#include "io/mesh_file.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::string source, target, output;
+  MatchSettings match;
+  bool json = false, verbose = false;
+};
+
+int match(const Settings& settings) {
+  check_usage(settings.match);
+  const Mesh source = read_mesh(settings.source), target = read_mesh(settings.target);
+  MatchedPair pair;
+  {
+    Progress progress(kMatchStages);
+    pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
+  }
+  if (settings.verbose) say(stage_report(pair.report));
+  else for (const std::string& hint : pair.report.hints) say("hint: " + hint);
+  if (!settings.json || !settings.output.empty()) put(settings.output, matches_text(pair.matches));
+  if (settings.json) put("", to_json(pair.report));
+  return kOk;
+}
+
+}  // namespace
+
+void add_match_options(CLI::App& command, MatchSettings& settings) {
+  command.add_option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units")
+      ->capture_default_str();
+  command.add_option("--keypoint-radius-pr", settings.keypoint_radius_pr, "Radius of Harris 3D and its suppression")
+      ->capture_default_str();
+  command.add_option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame")->capture_default_str();
+}
+
+void check_usage(const MatchSettings& settings) {
+  try {
+    check_resolution_rule(settings.resolution);
+  } catch (const InvalidInput& error) {
+    throw UsageError(error.what());
+  }
+  if (!(settings.keypoint_radius_pr > 0) || !(settings.support_radius_pr > 0))
+    throw UsageError("--keypoint-radius-pr and --support-radius-pr: expected lengths above zero");
+}
+
+void add_match(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("match", "Keypoints, descriptors and their matches: two meshes in, one table out");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("source", settings->source, "Source mesh (a model)")->required();
+  command->add_option("target", settings->target, "Target mesh (a scene)")->required();
+  command->add_option("-o,--output", settings->output, "Where the table goes (default: standard output)");
+  command->add_flag("--json", settings->json, "The stage report as JSON on standard output (the table then needs -o)");
+  command->add_flag("-v,--verbose", settings->verbose, "The stage report in words on standard error");
+  add_match_options(*command, settings->match);
+  command->footer("Examples:\n  corral match model.ply scene.ply -o matches.csv\n"
+                  "  corral match model.ply scene.ply --json -o matches.csv");
+  command->callback([settings, &action] { action = [settings] { return match(*settings); }; });
+}
+
+}  // namespace corral

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// corral run: two meshes in, every grouper scored by its alignment.
+#include <algorithm>
+#include <sstream>
+
+#include "apps/commands/commands.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+#include "io/file.h"
+#include "io/group_file.h"
+#include "io/matches_file.h"
+#include "io/mesh_file.h"
+#include "io/transform_file.h"
+#include "kernel/surface/visibility.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::string source, target, truth, methods = "all", output;
+  double threshold_pr = 4;
+  int repeat = 1;
+  MatchSettings match;
+  bool json = false, verbose = false;
+};
+
+/// "all" or names between commas, each once.
+std::vector<std::string> method_names(const std::string& text) {
+  std::vector<std::string> names;
+  if (text == "all")
+    for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
+  std::istringstream stream(text == "all" ? "" : text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) throw UsageError("--methods: " + name + " stands twice");
+    names.push_back(name);
+  }
+  if (names.empty()) throw UsageError("--methods: expected all, or names such as ss,gc");
+  return names;
+}
+
+struct PairRun {
+  MatchedPair pair;
+  std::optional<PairTruth> truth;
+  std::vector<MethodRecord> records;
+
+  std::optional<int> true_matches() const {
+    if (!truth) return std::nullopt;
+    const auto labels = label_inliers(pair.matches, truth->target_from_source, truth->threshold_pr);
+    return static_cast<int>(std::count(labels.begin(), labels.end(), true));
+  }
+};
+
+Json to_json(const PairRun& run, const Settings& settings) {
+  Json methods = Json::array();
+  for (const MethodRecord& record : run.records) methods.push_back(corral::to_json(record));
+  return {{"source", settings.source},
+          {"target", settings.target},
+          {"resolution", run.pair.report.resolution},
+          {"matches", run.pair.matches.size()},
+          {"true_matches", json_or_null(run.true_matches())},
+          {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
+          {"methods", methods}};
+}
+
+/// Every intermediate file of the run.
+void write_folder(const PairRun& run, const Settings& settings) {
+  make_folder(settings.output);
+  const std::string folder = settings.output + "/";
+  write_file(folder + "matches.csv", matches_text(run.pair.matches));
+  put(folder + "match_report.json", corral::to_json(run.pair.report));
+  for (const MethodRecord& record : run.records) {
+    if (!record.failure.empty()) continue;
+    write_file(folder + "group_" + record.method + ".csv",
+               group_text({run.pair.matches.size(), record.found.selected, record.found.scores}));
+    put(folder + "refine_" + record.method + ".json", corral::to_json(record.pose, record.errors));
+    if (record.pose.target_from_source)
+      write_file(folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source));
+  }
+  write_file(folder + "methods.csv", methods_csv(run.records));
+  put(folder + "run.json", to_json(run, settings));
+}
+
+PairRun evaluate(const Settings& settings, const std::vector<std::string>& methods) {
+  std::vector<ConfiguredGrouper> configured;
+  for (const std::string& name : methods) configured.push_back(configure_grouper(name, {}));
+  PairRun run;
+  if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
+  const Mesh source = read_mesh(settings.source), target = read_mesh(settings.target);
+  Progress progress(kMatchStages + 1 + static_cast<double>(methods.size()));
+  run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
+  if (run.truth) {
+    progress.begin("overlap");
+    run.truth->overlap = overlap_points(source.vertices, PointIndex(target.vertices), run.truth->target_from_source,
+                                        settings.threshold_pr * run.pair.report.resolution);
+  }
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    progress.begin(methods[i]);
+    run.records.push_back(evaluate_method(methods[i], configured[i], run.pair.matches, run.truth, settings.repeat));
+  }
+  return run;
+}
+
+std::string heading(const PairRun& run, const Settings& settings) {
+  std::string text = settings.source + " -> " + settings.target + ": " + std::to_string(run.pair.matches.size()) + " matches";
+  if (const auto right = run.true_matches())
+    text += ", " + std::to_string(*right) + " right within " + fixed(settings.threshold_pr, 1) + " pr; overlap " +
+            std::to_string(run.truth->overlap.rows()) + " of " + std::to_string(run.pair.report.source.points) + " points";
+  return text + "\n";
+}
+
+int run_pair(const Settings& settings) {
+  check_usage(settings.match);
+  if (!(settings.threshold_pr > 0)) throw UsageError("--threshold-pr: expected a length above zero");
+  if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
+  const PairRun run = evaluate(settings, method_names(settings.methods));
+  if (settings.verbose) say(stage_report(run.pair.report));
+  else for (const std::string& hint : run.pair.report.hints) say("hint: " + hint);
+  if (!settings.output.empty()) write_folder(run, settings);
+  if (settings.json) put("", to_json(run, settings));
+  else put("", heading(run, settings) + methods_text(run.records));
+  const bool failed = std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
+  return failed ? kPartial : kOk;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every method");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("source", settings->source, "Source mesh (a model)")->required();
+  command->add_option("target", settings->target, "Target mesh (a scene)")->required();
+  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors");
+  command->add_option("--methods", settings->methods, "all, or names between commas: ss,nnsr,ransac,st,gc,hough,si")
+      ->capture_default_str();
+  command->add_option("-o,--output", settings->output, "Folder for every intermediate file");
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")->capture_default_str();
+  command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")->capture_default_str();
+  command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
+  command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
+  add_match_options(*command, settings->match);
+  command->footer("Examples:\n  corral run model.ply scene.ply --truth truth.txt\n"
+                  "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
+  command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });
+}
+
+}  // namespace corral

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The program: one line of command, one answer. Everything it does is in commands/.
+#include <exception>
+#include <new>
+
+#include "apps/commands/commands.h"
+#include "apps/report.h"
+#include "kernel/error.h"
+
+namespace {
+
+int run_action(const corral::Action& action) {
+  try {
+    return action();
+  } catch (const corral::UsageError& error) {
+    corral::say(std::string("corral: ") + error.what());
+    return corral::kUsage;
+  } catch (const corral::IoError& error) {
+    corral::say(std::string("corral: ") + error.what());
+    return corral::kBadInput;
+  } catch (const corral::InvalidInput& error) {
+    corral::say(std::string("corral: ") + error.what());
+    return corral::kBadInput;
+  } catch (const std::bad_alloc&) {
+    corral::say("corral: out of memory");
+    return corral::kOtherFailure;
+  } catch (const std::exception& error) {
+    corral::say(std::string("corral: ") + error.what());
+    return corral::kOtherFailure;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Corral: which 3D correspondence grouper should I use, and how well does the surface align if I do?", "corral");
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded so, 1 anything else.\n"
+      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest other.\n"
+      "'corral COMMAND --help' has examples.");
+  corral::Action action;
+  corral::add_run(app, action);
+  corral::add_info(app, action);
+  corral::add_match(app, action);
+  corral::add_group(app, action);
+  corral::add_refine(app, action);
+  corral::add_score(app, action);
+  corral::add_groupers(app, action);
+  corral::add_perturb(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? corral::kOk : corral::kUsage;
+  }
+  return run_action(action);
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "apps/evaluate_pair.h"
+
+#include <algorithm>
+
+#include "apps/stopwatch.h"
+
+namespace corral {
+
+PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
+  return {rotation_error_deg(estimate, truth.target_from_source),
+          translation_error_pr(estimate, truth.target_from_source, resolution),
+          point_error(estimate, truth.target_from_source, truth.overlap, resolution)};
+}
+
+TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat) {
+  TimedGrouping timed;
+  std::vector<double> times;
+  for (int call = 0; call < std::max(repeat, 1); ++call) {
+    Stopwatch watch;
+    GroupingResult found = group(matches);
+    times.push_back(watch.lap_ms());
+    if (call == 0) timed.found = std::move(found);
+  }
+  std::sort(times.begin(), times.end());
+  timed.time_ms = (times[(times.size() - 1) / 2] + times[times.size() / 2]) / 2;
+  return timed;
+}
+
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper, const CorrespondenceSet& matches,
+                             const std::optional<PairTruth>& truth, int repeat) {
+  MethodRecord record;
+  record.method = name;
+  try {
+    TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
+    record.found = std::move(timed.found);
+    record.time_ms = timed.time_ms;
+    if (truth)
+      record.score = score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
+    record.pose = refine_rigid(matches, record.found.selected);
+    if (truth && record.pose.target_from_source)
+      record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
+  } catch (const std::exception& error) {
+    record.failure = error.what();
+  }
+  return record;
+}
+
+}  // namespace corral

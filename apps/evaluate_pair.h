@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grouping/registry.h"
+#include "kernel/evaluation.h"
+#include "refine/refine_rigid.h"
+
+namespace corral {
+
+/// What is known of a pair beside its matches.
+struct PairTruth {
+  RigidTransform target_from_source;
+  Points overlap;           ///< source points over which a pose is judged; may be empty
+  double threshold_pr = 4;  ///< of a right match
+};
+
+/// A pose against the truth; rmse is absent if there is no point to take it over.
+struct PoseErrors {
+  double rotation_error_deg = 0, translation_error_pr = 0;
+  std::optional<PointError> points;
+};
+PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
+
+/// One method on one pair. What could not be had is absent.
+struct MethodRecord {
+  std::string method;
+  std::string failure;  ///< why the method gave no answer; empty if it did
+  GroupingResult found;
+  double time_ms = 0;  ///< median of the timed calls, the grouping alone
+  std::optional<GroupingScore> score;  ///< with a truth
+  RefinedPose pose;
+  std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
+
+  std::string status() const { return failure.empty() ? to_text(pose.status) : "failed: " + failure; }
+};
+
+/// The median wall time of `repeat` calls (at least 1) and the answer of the first.
+struct TimedGrouping {
+  GroupingResult found;
+  double time_ms = 0;
+};
+TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat);
+
+/// Groups, scores, refines and judges; a method that refuses the table is a record of that.
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper, const CorrespondenceSet& matches,
+                             const std::optional<PairTruth>& truth, int repeat);
+
+}  // namespace corral

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "io/file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+namespace {
+
+Json to_json(const SurfaceReport& report) {
+  return {{"points", report.points},
+          {"faces", report.faces},
+          {"resolution", report.resolution},
+          {"candidates", report.candidates},
+          {"dropped_small_support", report.dropped_small_support},
+          {"dropped_no_frame", report.dropped_no_frame},
+          {"dropped_no_histogram", report.dropped_no_histogram},
+          {"keypoints", report.keypoints},
+          {"resolution_ms", report.resolution_ms},
+          {"keypoints_ms", report.keypoints_ms},
+          {"normals_ms", report.normals_ms},
+          {"descriptors_ms", report.descriptors_ms}};
+}
+
+/// The members that a pose against the truth has; null where it has none.
+void add_errors(Json& json, const std::optional<PoseErrors>& errors) {
+  std::optional<double> rotation, translation, rmse, mean;
+  if (errors) {
+    rotation = errors->rotation_error_deg;
+    translation = errors->translation_error_pr;
+    if (errors->points) rmse = errors->points->rmse_pr, mean = errors->points->mean_pr;
+  }
+  json["rotation_error_deg"] = json_or_null(rotation);
+  json["translation_error_pr"] = json_or_null(translation);
+  json["rmse_pr"] = json_or_null(rmse);
+  json["mean_error_pr"] = json_or_null(mean);
+}
+
+std::string surface_line(const char* name, const SurfaceReport& side) {
+  return std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) + " faces, pr " +
+         to_text(side.resolution) + "; " + std::to_string(side.candidates) + " keypoints, dropped " +
+         std::to_string(side.dropped_small_support) + " with fewer than 10 neighbours, " +
+         std::to_string(side.dropped_no_frame) + " without a frame, " + std::to_string(side.dropped_no_histogram) +
+         " without a histogram; " + std::to_string(side.keypoints) + " described (" + fixed(side.resolution_ms, 0) + " + " +
+         fixed(side.keypoints_ms, 0) + " + " + fixed(side.normals_ms, 0) + " + " + fixed(side.descriptors_ms, 0) +
+         " ms for resolution, keypoints, normals, descriptors)\n";
+}
+
+/// What a row of the table of methods holds, in its order, with so many decimals for people (-1: a whole number).
+struct Cell {
+  std::optional<double> value;
+  int decimals;
+};
+std::vector<Cell> cells(const MethodRecord& record) {
+  std::optional<double> selected, precision, recall, f1, time, rotation, translation, rmse;
+  if (record.failure.empty()) selected = static_cast<double>(record.found.selected.size()), time = record.time_ms;
+  if (record.score && record.failure.empty())
+    precision = record.score->precision, recall = record.score->recall, f1 = record.score->f1;
+  if (record.errors) {
+    rotation = record.errors->rotation_error_deg;
+    translation = record.errors->translation_error_pr;
+    if (record.errors->points) rmse = record.errors->points->rmse_pr;
+  }
+  return {{selected, 0}, {precision, 3}, {recall, 3}, {f1, 3}, {time, 2}, {rotation, 3}, {translation, 3}, {rmse, 3}};
+}
+
+const std::vector<std::string> kColumns = {"method", "selected", "precision", "recall", "f1", "time_ms",
+                                           "rotation_error_deg", "translation_error_pr", "rmse_pr", "status"};
+
+}  // namespace
+
+Json to_json(const RigidTransform& transform) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row)
+    rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2), transform.translation(row)});
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  return rows;
+}
+
+Json to_json(const MatchReport& report) {
+  return {{"resolution", report.resolution},
+          {"keypoint_radius", report.keypoint_radius},
+          {"support_radius", report.support_radius},
+          {"source", to_json(report.source)},
+          {"target", to_json(report.target)},
+          {"matches", report.matches},
+          {"matching_ms", report.matching_ms},
+          {"hints", report.hints}};
+}
+
+Json to_json(const GroupingScore& score) {
+  return {{"matches", score.matches},
+          {"selected", score.selected},
+          {"correct", score.correct},
+          {"true_matches", score.true_matches},
+          {"precision", json_or_null(score.precision)},
+          {"recall", json_or_null(score.recall)},
+          {"f1", json_or_null(score.f1)}};
+}
+
+Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors) {
+  Json json = {{"status", to_text(pose.status)},
+               {"target_from_source", pose.target_from_source ? to_json(*pose.target_from_source) : Json(nullptr)}};
+  add_errors(json, errors);
+  json["iterations"] = pose.iterations;
+  json["converged"] = pose.converged;
+  json["initial"] = pose.initial ? to_json(*pose.initial) : Json(nullptr);
+  json["initial_rms_pr"] = pose.initial ? Json(pose.initial_rms_pr) : Json(nullptr);
+  json["final_rms_pr"] = pose.target_from_source ? Json(pose.final_rms_pr) : Json(nullptr);
+  json["covariance"] = nullptr;
+  if (pose.covariance) {
+    json["covariance"] = Json::array();
+    for (int row = 0; row < 6; ++row) {
+      Json numbers = Json::array();
+      for (int column = 0; column < 6; ++column) numbers.push_back((*pose.covariance)(row, column));
+      json["covariance"].push_back(numbers);
+    }
+  }
+  return json;
+}
+
+Json to_json(const MethodRecord& record) {
+  Json json = {{"method", record.method}};
+  const std::vector<Cell> values = cells(record);
+  for (std::size_t i = 0; i < values.size(); ++i) json[kColumns[i + 1]] = json_or_null(values[i].value);
+  if (values[0].value) json["selected"] = record.found.selected.size();
+  json["status"] = record.status();
+  return json;
+}
+
+Json to_json(const std::vector<OptionValue>& options) {
+  Json json = Json::object();
+  for (const OptionValue& option : options) json[option.name] = option.value;
+  return json;
+}
+
+std::string stage_report(const MatchReport& report) {
+  std::string text = surface_line("source", report.source) + surface_line("target", report.target) + "pair: pr " +
+                     to_text(report.resolution) + ", keypoint radius " + to_text(report.keypoint_radius) +
+                     ", support radius " + to_text(report.support_radius) + " mesh units; " +
+                     std::to_string(report.matches) + " matches in " + fixed(report.matching_ms, 0) + " ms";
+  for (const std::string& hint : report.hints) text += "\nhint: " + hint;
+  return text;
+}
+
+TextTable::TextTable(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
+
+void TextTable::add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+std::string TextTable::str() const {
+  std::vector<std::size_t> widths(rows_.front().size(), 0);
+  for (const auto& row : rows_)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], std::max<std::size_t>(row[i].size(), 1));
+  std::string text;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string cell = row[i].empty() ? "-" : row[i];
+      const std::string space(widths[i] - cell.size(), ' ');
+      const bool left = i == 0 || i + 1 == row.size();
+      line += (i > 0 ? "  " : "") + (left ? cell + space : space + cell);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string TextTable::markdown() const {
+  std::string text;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    text += "|";
+    for (const std::string& cell : rows_[row]) {
+      std::string escaped;
+      for (const char letter : cell) escaped += letter == '|' ? std::string("\\|") : std::string(1, letter);
+      text += " " + escaped + " |";
+    }
+    text += "\n";
+    if (row > 0) continue;
+    text += "|";
+    for (std::size_t i = 0; i < rows_[0].size(); ++i) text += " --- |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string fixed(std::optional<double> value, int decimals) {
+  if (!value) return "";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, *value);
+  return buffer;
+}
+
+std::string methods_text(const std::vector<MethodRecord>& records) {
+  TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr", "RMSE pr", "status"});
+  for (const MethodRecord& record : records) {
+    std::vector<std::string> row{record.method};
+    for (const Cell& cell : cells(record)) row.push_back(fixed(cell.value, cell.decimals));
+    row.push_back(record.status());
+    table.add(row);
+  }
+  return table.str();
+}
+
+std::string methods_csv(const std::vector<MethodRecord>& records) {
+  std::string text;
+  for (const std::string& column : kColumns) text += (text.empty() ? "" : ",") + column;
+  text += "\n";
+  for (const MethodRecord& record : records) {
+    text += record.method;
+    for (const Cell& cell : cells(record)) text += "," + (cell.value ? to_text(*cell.value) : "");
+    std::string status = record.status();  // a message may hold what would end the field
+    std::replace_if(status.begin(), status.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
+    text += "," + status + "\n";
+  }
+  return text;
+}
+
+void put(const std::string& path, const std::string& text) {
+  if (!path.empty()) return write_file(path, text);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw IoError("standard output", "", "cannot be written");
+}
+
+void put(const std::string& path, const Json& json) { put(path, json.dump(2) + "\n"); }
+
+void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+}  // namespace corral

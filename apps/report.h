@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/evaluate_pair.h"
+#include "apps/match_pair.h"
+
+namespace corral {
+
+using Json = nlohmann::ordered_json;  // keys stay in the order of the documentation
+
+template <class Value>
+Json json_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_json(const RigidTransform& transform);  ///< four rows of four
+Json to_json(const MatchReport& report);
+Json to_json(const GroupingScore& score);
+Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors);
+Json to_json(const MethodRecord& record);
+Json to_json(const std::vector<OptionValue>& options);  ///< name -> value as text
+
+/// The stage report in words, for stderr.
+std::string stage_report(const MatchReport& report);
+
+/// Columns of text under a header, numbers to the right; "-" where a cell is empty.
+class TextTable {
+ public:
+  explicit TextTable(std::vector<std::string> header);
+  void add(std::vector<std::string> row);
+  std::string str() const;
+  std::string markdown() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// A number with so many decimals; empty if absent.
+std::string fixed(std::optional<double> value, int decimals);
+
+/// The table of a pair, one row a method.
+std::string methods_text(const std::vector<MethodRecord>& records);
+/// The same for scripts: exact numbers, empty where undefined.
+std::string methods_csv(const std::vector<MethodRecord>& records);
+
+/// Writes to the file, or to stdout if no file is named.
+void put(const std::string& path, const std::string& text);
+void put(const std::string& path, const Json& json);
+/// A line of talk on stderr.
+void say(const std::string& line);
+
+}  // namespace corral

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace corral {
+
+/// The whole content of a regular file or a pipe. Throws IoError naming the path: missing, a directory, not readable.
+std::string read_file(const std::string& path);
+
+/// Writes a file whole or not at all: into a new file beside it, which then takes its place. Pipes and devices are written
+/// to directly. Throws IoError; what was there before is then still there.
+void write_file(const std::string& path, const std::string& content);
+
+/// Creates a folder and its parents if they are not there. Throws IoError if that is not possible.
+void make_folder(const std::string& path);
+
+}  // namespace corral

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corral {
+
+/// Walks over the lines of a text file and turns fields into numbers; whatever is wrong becomes an IoError that names the
+/// file and the line. A line that the end of the file cuts off is an error: nobody can tell 1.25 from 1.2 cut short.
+class LineReader {
+ public:
+  /// Both must outlive the reader. Lines starting with `comment` are skipped, as are blank ones ('\0': no comments).
+  LineReader(const std::string& path, std::string_view text, char comment = '\0');
+
+  /// Moves to the next line that is neither blank nor a comment; false at the end of the file.
+  bool next();
+  /// The same where a line must follow; `expected` says what was to be there.
+  void need(const std::string& expected);
+
+  std::string_view line() const { return line_; }         ///< without its end and without white space around
+  std::size_t line_number() const { return number_; }     ///< of line(), from 1
+  std::string_view rest() const { return text_; }         ///< what follows line()
+
+  /// line() split at white space, or at each occurrence of `separator`.
+  const std::vector<std::string_view>& fields();
+  const std::vector<std::string_view>& fields(char separator);
+
+  double finite_number(std::string_view field) const;
+  /// A whole number in low .. high.
+  std::int64_t integer(std::string_view field, std::int64_t low, std::int64_t high, const std::string& what) const;
+
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  const std::string& path_;
+  std::string_view text_, line_;
+  char comment_;
+  std::size_t number_ = 0;
+  std::vector<std::string_view> fields_;
+};
+
+/// A piece of a file in quotes, shortened and made printable for a message.
+std::string quoted(std::string_view text);
+
+}  // namespace corral

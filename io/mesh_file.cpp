@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "io/mesh_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "io/file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+
+void TriangleBuilder::add_polygon(const Indices& corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    corners_.insert(corners_.end(), {corners[0], corners[i - 1], corners[i]});
+}
+
+Triangles TriangleBuilder::build() const {
+  return Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+      corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
+}
+
+Mesh read_mesh(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto parser = ending == ".ply" ? parse_ply : ending == ".off" ? parse_off : ending == ".obj" ? parse_obj : nullptr;
+  const std::string content = read_file(path);
+  if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in .ply, .off or .obj");
+  if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
+  return parser(path, content);
+}
+
+void write_mesh(const std::string& path, const Mesh& mesh) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.rows()) +
+                     "\nproperty double x\nproperty double y\nproperty double z\n";
+  if (mesh.triangles.rows() > 0)
+    text += "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
+  text += "end_header\n";
+  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
+    text += to_text(mesh.vertices(row, 0)) + " " + to_text(mesh.vertices(row, 1)) + " " + to_text(mesh.vertices(row, 2)) + "\n";
+  for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row)
+    text += "3 " + std::to_string(mesh.triangles(row, 0)) + " " + std::to_string(mesh.triangles(row, 1)) + " " +
+            std::to_string(mesh.triangles(row, 2)) + "\n";
+  write_file(path, text);
+}
+
+}  // namespace corral

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "kernel/surface/mesh.h"
+
+namespace corral {
+
+/// Reads a mesh or a point cloud; the format is that of the name's ending: .ply (ASCII and both binaries), .off, .obj.
+/// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
+/// anything is allocated.
+/// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, more or
+///           less than the header promises, a coordinate that is not finite, a face of a vertex that is not there.
+Mesh read_mesh(const std::string& path);
+
+/// Writes ASCII PLY in double precision; reading it back gives the same mesh. Throws IoError.
+void write_mesh(const std::string& path, const Mesh& mesh);
+
+// One parser per format, on the whole content of a file; `path` is for messages.
+Mesh parse_ply(const std::string& path, std::string_view content);
+Mesh parse_off(const std::string& path, std::string_view content);
+Mesh parse_obj(const std::string& path, std::string_view content);
+
+/// The most vertices or faces a mesh may have: they are counted in int.
+constexpr long long kMaximumCount = 2147483647;
+
+/// Collects polygons as triangle fans around their first corner.
+class TriangleBuilder {
+ public:
+  void add_polygon(const Indices& corners);
+  Triangles build() const;
+
+ private:
+  Indices corners_;
+};
+
+}  // namespace corral

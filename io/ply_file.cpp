@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+// PLY: a text header that names elements and their properties, then the elements as lines of text or as packed bytes.
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "io/line_reader.h"
+#include "io/mesh_file.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Type {
+  std::string_view name, other_name;
+  std::size_t bytes;
+  char kind;  // i: signed, u: unsigned, f: floating point
+};
+constexpr std::array<Type, 8> kTypes = {{{"char", "int8", 1, 'i'},
+                                         {"uchar", "uint8", 1, 'u'},
+                                         {"short", "int16", 2, 'i'},
+                                         {"ushort", "uint16", 2, 'u'},
+                                         {"int", "int32", 4, 'i'},
+                                         {"uint", "uint32", 4, 'u'},
+                                         {"float", "float32", 4, 'f'},
+                                         {"double", "float64", 8, 'f'}}};
+
+struct Property {
+  std::string name;
+  const Type* type = nullptr;
+  const Type* count_type = nullptr;  // of a list
+};
+
+struct Element {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<Property> properties;
+
+  /// Place of a property among the others, -1 if there is none.
+  int find(std::string_view wanted) const {
+    for (std::size_t i = 0; i < properties.size(); ++i)
+      if (properties[i].name == wanted) return static_cast<int>(i);
+    return -1;
+  }
+};
+
+enum class Encoding { Ascii, Little, Big };
+
+struct Header {
+  Encoding encoding = Encoding::Ascii;
+  std::vector<Element> elements;
+};
+
+const Type* find_type(const LineReader& reader, std::string_view name) {
+  for (const Type& type : kTypes)
+    if (name == type.name || name == type.other_name) return &type;
+  reader.fail("found the type " + quoted(name) + ", expected char, uchar, short, ushort, int, uint, float or double");
+}
+
+Property parse_property(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  if (fields.size() == 3) return {std::string(fields[2]), find_type(reader, fields[1]), nullptr};
+  if (fields.size() != 5 || fields[1] != "list")
+    reader.fail("found " + quoted(reader.line()) + ", expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+  const Type* count_type = find_type(reader, fields[2]);
+  if (count_type->kind == 'f') reader.fail("the length of a list is " + quoted(fields[2]) + ", expected a whole type");
+  return {std::string(fields[4]), find_type(reader, fields[3]), count_type};
+}
+
+Encoding parse_format(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  if (fields.size() == 3 && fields[0] == "format" && fields[2] == "1.0") {
+    if (fields[1] == "ascii") return Encoding::Ascii;
+    if (fields[1] == "binary_little_endian") return Encoding::Little;
+    if (fields[1] == "binary_big_endian") return Encoding::Big;
+  }
+  reader.fail("found " + quoted(reader.line()) + ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+}
+
+Header parse_header(LineReader& reader) {
+  Header header;
+  reader.need("the word ply");
+  if (reader.line() != "ply") reader.fail("found " + quoted(reader.line()) + ", expected the word ply");
+  reader.need("the format");
+  header.encoding = parse_format(reader, reader.fields());
+  while (true) {
+    reader.need("end_header");
+    const auto& fields = reader.fields();
+    if (fields[0] == "end_header") return header;
+    if (fields[0] == "comment" || fields[0] == "obj_info") continue;
+    if (fields[0] == "element" && fields.size() == 3) {
+      for (const Element& other : header.elements)
+        if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
+      header.elements.push_back({std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
+    } else if (fields[0] == "property" && !header.elements.empty()) {
+      header.elements.back().properties.push_back(parse_property(reader, fields));
+    } else {
+      reader.fail("found " + quoted(reader.line()) + ", expected an element or a property");
+    }
+  }
+}
+
+/// The values of a text body, one element a line.
+class TextBody {
+ public:
+  TextBody(const std::string&, LineReader& reader) : reader_(reader) {}
+
+  /// The fewest bytes that an element can take: a digit and a separator per property.
+  static std::size_t smallest(const Element& element) { return 2 * element.properties.size(); }
+  std::size_t bytes_left() const { return reader_.rest().size(); }
+
+  void begin(const Element& element, std::int64_t row) {
+    reader_.need(element.name + " " + std::to_string(row) + " of " + std::to_string(element.count));
+    fields_ = &reader_.fields();
+    next_ = 0;
+  }
+  double value(const Type& type) {
+    if (next_ == fields_->size()) fail("found " + std::to_string(next_) + " values, expected more");
+    const std::string_view field = (*fields_)[next_++];
+    if (type.kind == 'f') return reader_.finite_number(field);
+    return static_cast<double>(reader_.integer(field, -kMaximumCount - 1, 2 * kMaximumCount + 1, "a whole value"));
+  }
+  std::size_t values_left() const { return fields_->size() - next_; }
+  void end() {
+    if (next_ < fields_->size())
+      fail("found " + std::to_string(fields_->size()) + " values, expected " + std::to_string(next_));
+  }
+  void finish() {
+    if (reader_.next()) fail("found " + quoted(reader_.line()) + " after the last element, expected the end of the file");
+  }
+  [[noreturn]] void fail(const std::string& problem) const { reader_.fail(problem); }
+
+ private:
+  LineReader& reader_;
+  const std::vector<std::string_view>* fields_ = nullptr;
+  std::size_t next_ = 0;
+};
+
+/// The values of a binary body.
+template <bool kBigEndian>
+class BinaryBody {
+ public:
+  BinaryBody(const std::string& path, LineReader& reader) : path_(path), all_(reader.rest()), left_(all_) {}
+
+  static std::size_t smallest(const Element& element) {
+    std::size_t bytes = 0;
+    for (const Property& property : element.properties) bytes += (property.count_type ? property.count_type : property.type)->bytes;
+    return bytes;
+  }
+  std::size_t bytes_left() const { return left_.size(); }
+  void begin(const Element&, std::int64_t) {}
+
+  double value(const Type& type) {
+    if (left_.size() < type.bytes) fail("the file ends within a value");
+    std::array<unsigned char, 8> raw{};
+    std::uint64_t bits = 0;
+    std::memcpy(raw.data(), left_.data(), type.bytes);
+    for (std::size_t i = 0; i < type.bytes; ++i) bits = bits << 8 | raw[kBigEndian ? i : type.bytes - 1 - i];
+    const double number = decode(type, bits);
+    if (!std::isfinite(number)) fail("found a number that is not finite");
+    left_.remove_prefix(type.bytes);
+    return number;
+  }
+  std::size_t values_left() const { return left_.size(); }
+  void end() {}
+  void finish() {
+    if (!left_.empty()) fail(std::to_string(left_.size()) + " bytes follow the last element, expected the end of the file");
+  }
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw IoError(path_, "byte " + std::to_string(all_.size() - left_.size()) + " after the header", problem);
+  }
+
+ private:
+  static double decode(const Type& type, std::uint64_t bits) {
+    if (type.kind == 'f' && type.bytes == 8) {
+      double number;
+      std::memcpy(&number, &bits, 8);
+      return number;
+    }
+    if (type.kind == 'f') {
+      const auto word = static_cast<std::uint32_t>(bits);
+      float number;
+      std::memcpy(&number, &word, 4);
+      return number;
+    }
+    if (type.kind == 'u') return static_cast<double>(bits);
+    const unsigned unused = 64 - 8 * static_cast<unsigned>(type.bytes);
+    return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);  // carries the sign up
+  }
+
+  const std::string& path_;
+  std::string_view all_, left_;
+};
+
+/// Where the properties that make a mesh stand.
+struct Layout {
+  int x, y, z;
+  int corners;
+};
+
+template <class Body>
+class MeshReader {
+ public:
+  MeshReader(const std::string& path, const Header& header, LineReader& reader) : path_(path), body_(path, reader) {
+    bool seen = false;
+    for (const Element& element : header.elements) {
+      check_size(element);
+      const Layout layout = layout_of(element);
+      if (element.name == "vertex") {
+        seen = true;
+        vertices_ = element.count;
+        mesh_.vertices.resize(vertices_, 3);
+      }
+      if (element.properties.empty()) continue;
+      for (std::int64_t row = 0; row < element.count; ++row) read_row(element, layout, row);
+    }
+    if (!seen) throw IoError(path_, "header", "no element vertex, expected one");
+    body_.finish();
+    for (const int corner : largest_corners_)
+      if (corner >= vertices_)
+        throw IoError(path_, "faces", "a corner is vertex " + std::to_string(corner) + ", expected 0 .. " + std::to_string(vertices_ - 1));
+    mesh_.triangles = triangles_.build();
+  }
+
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  /// An element cannot hold more than the bytes that are there.
+  void check_size(const Element& element) const {
+    const std::size_t smallest = Body::smallest(element);
+    if (smallest > 0 && static_cast<std::size_t>(element.count) > body_.bytes_left() / smallest + 1)
+      throw IoError(path_, "header", "promises " + std::to_string(element.count) + " of element " + element.name +
+                                         ", but only " + std::to_string(body_.bytes_left()) + " bytes follow");
+  }
+
+  Layout layout_of(const Element& element) const {
+    const Layout layout{element.find("x"), element.find("y"), element.find("z"),
+                        std::max(element.find("vertex_indices"), element.find("vertex_index"))};
+    if (element.name == "vertex") {
+      for (const int place : {layout.x, layout.y, layout.z})
+        if (place < 0 || element.properties[static_cast<std::size_t>(place)].count_type)
+          throw IoError(path_, "header", "element vertex lacks a coordinate, expected properties x, y and z");
+    } else if (element.name == "face") {
+      if (layout.corners < 0 || !element.properties[static_cast<std::size_t>(layout.corners)].count_type ||
+          element.properties[static_cast<std::size_t>(layout.corners)].type->kind == 'f')
+        throw IoError(path_, "header", "element face lacks its corners, expected a list of whole numbers vertex_indices");
+    }
+    return layout;
+  }
+
+  void read_row(const Element& element, const Layout& layout, std::int64_t row) {
+    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    body_.begin(element, row);
+    for (int place = 0; place < static_cast<int>(element.properties.size()); ++place) {
+      const Property& property = element.properties[static_cast<std::size_t>(place)];
+      if (property.count_type) {
+        read_list(property);
+        if (is_face && place == layout.corners) add_face();
+      } else {
+        const double value = body_.value(*property.type);
+        if (!is_vertex) continue;
+        if (place == layout.x) mesh_.vertices(row, 0) = value;
+        if (place == layout.y) mesh_.vertices(row, 1) = value;
+        if (place == layout.z) mesh_.vertices(row, 2) = value;
+      }
+    }
+    body_.end();
+  }
+
+  void read_list(const Property& property) {
+    const double count = body_.value(*property.count_type);
+    if (count < 0 || count > static_cast<double>(body_.values_left()))
+      body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) + " values, expected no more than follow");
+    list_.clear();
+    for (double i = 0; i < count; ++i) list_.push_back(body_.value(*property.type));
+  }
+
+  void add_face() {
+    Indices corners;
+    int largest = -1;
+    for (const double corner : list_) {
+      if (corner < 0 || corner > static_cast<double>(kMaximumCount)) body_.fail("a corner is below 0 or too large");
+      corners.push_back(static_cast<int>(corner));
+      largest = std::max(largest, corners.back());
+    }
+    if (largest >= vertices_ && vertices_ > 0)
+      body_.fail("a corner is vertex " + std::to_string(largest) + ", expected 0 .. " + std::to_string(vertices_ - 1));
+    if (vertices_ == 0) largest_corners_.push_back(largest);  // faces before vertices: judged at the end
+    triangles_.add_polygon(corners);
+  }
+
+  const std::string& path_;
+  Body body_;
+  Mesh mesh_;
+  std::int64_t vertices_ = 0;
+  TriangleBuilder triangles_;
+  std::vector<double> list_;
+  Indices largest_corners_;
+};
+
+}  // namespace
+
+Mesh parse_ply(const std::string& path, std::string_view content) {
+  LineReader reader(path, content);
+  const Header header = parse_header(reader);
+  switch (header.encoding) {
+    case Encoding::Ascii: return MeshReader<TextBody>(path, header, reader).take();
+    case Encoding::Big: return MeshReader<BinaryBody<true>>(path, header, reader).take();
+    case Encoding::Little: break;
+  }
+  return MeshReader<BinaryBody<false>>(path, header, reader).take();
+}
+
+}  // namespace corral

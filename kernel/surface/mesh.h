@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "kernel/types.h"
+
+namespace corral {
+
+/// Three vertices per row, counter-clockwise seen from outside.
+using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3>;
+
+/// A triangle mesh, or a point cloud if it has no triangles. Plain arrays: whoever needs half-edges or a tree builds them.
+struct Mesh {
+  Points vertices;      ///< V x 3, mesh units
+  Triangles triangles;  ///< F x 3, zero-based rows of `vertices`; F = 0 for a cloud
+
+  /// Throws InvalidInput if a coordinate is not finite or a triangle names a vertex that is not there.
+  void validate(const std::string& who) const;
+};
+
+/// Mean of all vertices; zero for none.
+Eigen::Vector3d vertex_centroid(const Mesh& mesh);
+
+/// Diagonal of the axis-aligned bounding box in mesh units; 0 for fewer than two vertices.
+double bounding_box_diagonal(const Points& points);
+
+/// Sum over the triangles around each vertex of their normals weighted by area, V x 3 (squared mesh units, not unit
+/// length); zero for a vertex without triangles.
+Points area_weighted_normals(const Mesh& mesh);
+
+}  // namespace corral

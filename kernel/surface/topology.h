@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernel/surface/mesh.h"
+
+namespace corral {
+
+/// How a mesh hangs together.
+struct Topology {
+  int duplicate_vertices = 0;   ///< vertices at exactly the place of an earlier one
+  int isolated_vertices = 0;    ///< vertices without a triangle (in a mesh that has triangles)
+  int degenerate_faces = 0;     ///< triangles with a repeated corner or without area
+  int non_manifold_faces = 0;   ///< triangles that no half-edge structure can take (third on an edge, or folded fan)
+  int components = 0;           ///< connected parts of the triangles
+  int boundary_edges = 0;       ///< edges with one triangle
+  int boundary_loops = 0;       ///< closed walks along boundary edges
+  double mean_edge_length = 0;  ///< over all edges, mesh units; 0 without triangles
+};
+
+/// Degenerate and non-manifold triangles are counted and left out of the components, boundaries and edges.
+Topology inspect_topology(const Mesh& mesh);
+
+/// The points without exact duplicates, in ascending order of x, then y, then z.
+Points distinct_points(const Points& points);
+
+}  // namespace corral

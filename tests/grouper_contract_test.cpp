@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// What every registered grouper promises, whatever its method.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grouping/registry.h"
+#include "kernel/evaluation.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using testing::full_table;
+using testing::harsh_table;
+using ::testing::HasSubstr;
+using testing::refusal_of;
+using testing::synthetic;
+
+class GrouperContract : public ::testing::TestWithParam<std::string> {
+ protected:
+  GroupingResult group(const CorrespondenceSet& matches, const OptionOverrides& overrides = {}) const {
+    return find_grouper(GetParam()).configure(overrides).group(matches);
+  }
+  std::string refusal(const CorrespondenceSet& matches) const {
+    return refusal_of([&] { group(matches); });
+  }
+};
+
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  for (const Grouper& grouper : groupers()) all.push_back(grouper.name);
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(Groupers, GrouperContract, ::testing::ValuesIn(names()),
+                         [](const auto& test) { return test.param; });
+
+/// Low noise, four of five matches right.
+SyntheticProblem easy_problem(std::uint64_t seed) {
+  SyntheticOptions options;
+  options.matches = 400;
+  options.inlier_ratio = 0.8;
+  options.noise_pr = 0.2;
+  options.frame_noise_deg = 0.5;
+  options.seed = seed;
+  return make_synthetic_problem(options);
+}
+
+/// The tables on which a promise about the form of the answer is checked.
+std::vector<CorrespondenceSet> varied_tables() {
+  std::vector<CorrespondenceSet> tables;
+  for (int rows = 0; rows <= 6; ++rows) tables.push_back(full_table(rows));
+  for (const double ratio : {0.05, 0.5, 1.0}) tables.push_back(harsh_table(200, ratio, 3));
+  CorrespondenceSet one_place = full_table(8);  // eight copies of one match
+  for (int row = 1; row < 8; ++row) {
+    one_place.source_points.row(row) = one_place.source_points.row(0);
+    one_place.target_points.row(row) = one_place.target_points.row(0);
+  }
+  tables.push_back(one_place);
+  CorrespondenceSet frameless = full_table(8);
+  for (auto& frame : frameless.source_frames) frame.setZero();
+  tables.push_back(frameless);
+  return tables;
+}
+
+TEST(Registry, HoldsTheSevenMethodsInTheOrderOfThePaper) {
+  EXPECT_THAT(names(), ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si"));
+}
+
+TEST(Registry, UnknownNameListsTheKnownOnes) {
+  const std::string text = refusal_of([] { find_grouper("pcl"); });
+  EXPECT_THAT(text, HasSubstr("pcl"));
+  for (const std::string& name : names()) EXPECT_THAT(text, HasSubstr(name));
+}
+
+TEST_P(GrouperContract, EmptyTableGivesEmptyAnswer) {
+  const GroupingResult result = group(CorrespondenceSet());
+  EXPECT_TRUE(result.selected.empty());
+  EXPECT_TRUE(result.scores.empty());
+  EXPECT_FALSE(result.target_from_source.has_value());
+}
+
+TEST_P(GrouperContract, FewRowsDoNotThrow) {
+  for (int rows = 1; rows <= 3; ++rows) EXPECT_NO_THROW(group(full_table(rows))) << rows << " rows";
+}
+
+TEST_P(GrouperContract, RowsAscendAndAreInRange) {
+  for (const CorrespondenceSet& matches : varied_tables()) {
+    const Indices selected = group(matches).selected;
+    for (std::size_t i = 1; i < selected.size(); ++i) EXPECT_LT(selected[i - 1], selected[i]);
+    if (selected.empty()) continue;
+    EXPECT_GE(selected.front(), 0);
+    EXPECT_LT(selected.back(), matches.size());
+  }
+}
+
+TEST_P(GrouperContract, ScoresAreOnePerMatchOrNone) {
+  for (const CorrespondenceSet& matches : varied_tables()) {
+    const std::vector<double> scores = group(matches).scores;
+    EXPECT_THAT(scores.size(), ::testing::AnyOf(0U, static_cast<std::size_t>(matches.size())));
+    for (const double score : scores) EXPECT_TRUE(std::isfinite(score));
+  }
+}
+
+TEST_P(GrouperContract, PoseIsARotation) {
+  for (const CorrespondenceSet& matches : varied_tables()) {
+    const auto pose = group(matches).target_from_source;
+    if (!pose) continue;
+    EXPECT_TRUE(is_rotation(pose->rotation, 1e-9));
+    EXPECT_TRUE(pose->translation.allFinite());
+  }
+}
+
+using Spoil = std::function<void(CorrespondenceSet&)>;
+
+TEST_P(GrouperContract, RaggedColumnsAreRefusedByName) {
+  const std::map<std::string, Spoil> spoils = {
+      {"target_points", [](auto& t) { t.target_points = t.target_points.topRows(4).eval(); }},
+      {"source_frames", [](auto& t) { t.source_frames.pop_back(); }},
+      {"target_frames", [](auto& t) { t.target_frames.pop_back(); }},
+      {"source_keypoints", [](auto& t) { t.source_keypoints.pop_back(); }},
+      {"target_keypoints", [](auto& t) { t.target_keypoints.push_back(0); }},
+      {"feature_distance", [](auto& t) { t.feature_distance = t.feature_distance.head(4).eval(); }},
+      {"second_feature_distance", [](auto& t) { t.second_feature_distance = Eigen::VectorXd::Ones(6); }},
+  };
+  for (const auto& [column, spoil] : spoils) {
+    CorrespondenceSet matches = full_table();
+    spoil(matches);
+    EXPECT_THAT(refusal(matches), HasSubstr(column));
+  }
+  CorrespondenceSet no_source = full_table();
+  no_source.source_points.resize(0, 3);
+  EXPECT_NE(refusal(no_source), "");
+}
+
+TEST_P(GrouperContract, NonFiniteColumnsAreRefusedByName) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const std::map<std::string, Spoil> spoils = {
+        {"source_points", [=](auto& t) { t.source_points(3, 1) = bad; }},
+        {"target_points", [=](auto& t) { t.target_points(4, 2) = bad; }},
+        {"source_frames", [=](auto& t) { t.source_frames[2](0, 0) = bad; }},
+        {"target_frames", [=](auto& t) { t.target_frames[2](2, 1) = bad; }},
+        {"feature_distance", [=](auto& t) { t.feature_distance(0) = bad; }},
+        {"second_feature_distance", [=](auto& t) { t.second_feature_distance(4) = bad; }},
+        {"resolution", [=](auto& t) { t.resolution = bad; }},
+        {"source_centroid", [=](auto& t) { (*t.source_centroid)(1) = bad; }},
+    };
+    for (const auto& [column, spoil] : spoils) {
+      CorrespondenceSet matches = full_table();
+      spoil(matches);
+      EXPECT_THAT(refusal(matches), HasSubstr(column)) << bad;
+    }
+  }
+}
+
+TEST_P(GrouperContract, ResolutionMustBePositive) {
+  for (const double bad : {0.0, -1.0}) {
+    CorrespondenceSet matches = full_table();
+    matches.resolution = bad;
+    EXPECT_THAT(refusal(matches), HasSubstr("resolution"));
+  }
+}
+
+TEST_P(GrouperContract, SameAnswerTwiceOnAHardProblem) {
+  for (const CorrespondenceSet& matches : {synthetic(400, 0.05, 1).matches, harsh_table(300, 0.05, 2)}) {
+    const GroupingResult first = group(matches), second = group(matches);
+    EXPECT_EQ(first.selected, second.selected);
+    EXPECT_EQ(first.scores, second.scores);
+    ASSERT_EQ(first.target_from_source.has_value(), second.target_from_source.has_value());
+    if (!first.target_from_source) continue;
+    EXPECT_EQ(first.target_from_source->rotation, second.target_from_source->rotation);
+    EXPECT_EQ(first.target_from_source->translation, second.target_from_source->translation);
+  }
+}
+
+TEST_P(GrouperContract, UnitOfLengthDoesNotMatter) {
+  for (const CorrespondenceSet& matches : {synthetic(300, 0.2, 1).matches, harsh_table(300, 0.1, 2)})
+    for (const double factor : {1024.0, 1.0 / 4096})  // powers of two: exact in floating point
+      EXPECT_EQ(group(testing::scaled(matches, factor)).selected, group(matches).selected);
+}
+
+TEST_P(GrouperContract, TranslationOfTheTargetDoesNotMatter) {
+  for (CorrespondenceSet matches : {synthetic(300, 0.3, 1).matches, harsh_table(300, 0.3, 2)}) {
+    // Whole multiples of 2^-20, so that the sums are exact.
+    matches.target_points = (matches.target_points * 1048576).array().round().matrix() / 1048576;
+    RigidTransform shift;
+    shift.translation = Eigen::Vector3d(512, -64.5, 1000.25);
+    EXPECT_EQ(group(testing::with_moved_target(matches, shift)).selected, group(matches).selected);
+  }
+}
+
+TEST_P(GrouperContract, RotationOfTheTargetDoesNotMatter) {
+  RigidTransform motion;
+  motion.translation = Eigen::Vector3d(10, -300, 42);
+  if (GetParam() == "hough")  // its cells are parallel to the axes: only turns that map axes to axes leave them whole
+    motion.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  else
+    motion.rotation = Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const CorrespondenceSet matches = synthetic(300, 0.3, seed).matches;
+    EXPECT_EQ(group(testing::with_moved_target(matches, motion)).selected, group(matches).selected);
+  }
+}
+
+TEST_P(GrouperContract, EasyProblemIsSolved) {
+  // ss and nnsr see feature distances only, whose two classes overlap in the synthetic tables: of the right matches,
+  // 4/5 pass the ratio test, and those with d1 < 0.35 or so are above any threshold that parts the classes.
+  const std::map<std::string, double> lowest_recall = {{"ss", 0.5}, {"nnsr", 0.7}};
+  const std::map<std::string, double> lowest_precision = {{"nnsr", 0.85}};
+  const auto bar = [&](const std::map<std::string, double>& bars) {
+    return bars.count(GetParam()) ? bars.at(GetParam()) : 0.9;
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const SyntheticProblem problem = easy_problem(seed);
+    const auto score =
+        score_grouping(label_inliers(problem.matches, problem.truth, 4), group(problem.matches).selected);
+    EXPECT_GT(score.recall.value(), bar(lowest_recall)) << "seed " << seed;
+    EXPECT_GT(score.precision.value(), bar(lowest_precision)) << "seed " << seed;
+  }
+}
+
+TEST_P(GrouperContract, PoseSolvesTheEasyProblem) {
+  const SyntheticProblem problem = easy_problem(4);
+  const auto pose = group(problem.matches).target_from_source;
+  EXPECT_EQ(pose.has_value(), GetParam() == "ransac");
+  if (!pose) return;
+  EXPECT_LT(rotation_error_deg(*pose, problem.truth), 2);
+  EXPECT_LT(translation_error_pr(*pose, problem.truth, problem.matches.resolution), 5);
+}
+
+TEST_P(GrouperContract, OptionsRoundTrip) {
+  const Grouper& grouper = find_grouper(GetParam());
+  OptionOverrides defaults;
+  for (const OptionValue& option : grouper.options) {
+    defaults[option.name] = option.value;
+    EXPECT_NE(option.meaning, "") << option.name;
+    EXPECT_NE(option.accepted, "") << option.name;
+  }
+  const ConfiguredGrouper configured = grouper.configure(defaults);
+  ASSERT_EQ(configured.options.size(), grouper.options.size());
+  for (std::size_t i = 0; i < grouper.options.size(); ++i) {
+    EXPECT_EQ(configured.options[i].name, grouper.options[i].name);
+    EXPECT_EQ(configured.options[i].value, grouper.options[i].value);
+  }
+  const CorrespondenceSet matches = synthetic(200, 0.2, 5).matches;
+  EXPECT_EQ(configured.group(matches).selected, group(matches).selected);
+}
+
+TEST_P(GrouperContract, UnknownOptionIsRefusedWithTheKnownOnes) {
+  const Grouper& grouper = find_grouper(GetParam());
+  const std::string text = refusal_of([&] { grouper.configure({{"no_such_option", "1"}}); });
+  EXPECT_THAT(text, HasSubstr("no_such_option"));
+  EXPECT_THAT(text, HasSubstr(grouper.name));
+  for (const OptionValue& option : grouper.options) EXPECT_THAT(text, HasSubstr(option.name));
+}
+
+TEST_P(GrouperContract, TextThatIsNoValueIsRefusedForEveryOption) {
+  for (const OptionValue& option : find_grouper(GetParam()).options)
+    for (const std::string text : {"", "nan", "much", "-1x"})
+      EXPECT_THAT(refusal_of([&] {
+                    find_grouper(GetParam()).configure({{option.name, text}});
+                  }),
+                  HasSubstr(option.name))
+          << "'" << text << "'";
+}
+
+}  // namespace
+}  // namespace corral

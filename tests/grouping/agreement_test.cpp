@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// Every grouper against a slow one written from its definition, on random tables of several hundred rows.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "grouping/ransac.h"
+#include "tests/support/reference_groupers.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using testing::harsh_table;
+using testing::jaccard;
+using testing::synthetic;
+
+struct NamedTable {
+  std::string name;
+  CorrespondenceSet matches;
+};
+
+NamedTable named_table(const std::string& kind, int matches, double inlier_ratio, std::uint64_t seed) {
+  return {kind + " table, " + std::to_string(matches) + " rows, inlier ratio " + std::to_string(inlier_ratio) +
+              ", seed " + std::to_string(seed),
+          kind == "harsh" ? harsh_table(matches, inlier_ratio, seed) : synthetic(matches, inlier_ratio, seed).matches};
+}
+
+/// Both kinds, three inlier ratios, as many seeds as asked for.
+std::vector<NamedTable> tables(const std::vector<int>& sizes, std::uint64_t seeds) {
+  std::vector<NamedTable> all;
+  for (const std::string kind : {"smooth", "harsh"})
+    for (const int size : sizes)
+      for (const double ratio : {0.05, 0.2, 0.5})
+        for (std::uint64_t seed = 1; seed <= seeds; ++seed) all.push_back(named_table(kind, size, ratio, seed));
+  return all;
+}
+
+template <class Options>
+void expect_identical(GroupingResult (*group)(const CorrespondenceSet&, const Options&),
+                      Indices (*reference)(const CorrespondenceSet&, const Options&), const Options& options,
+                      const std::vector<NamedTable>& on) {
+  std::size_t selected = 0;
+  for (const auto& [name, matches] : on) {
+    SCOPED_TRACE(name);
+    const Indices expected = reference(matches, options);
+    EXPECT_EQ(group(matches, options).selected, expected);
+    selected += expected.size();
+  }
+  EXPECT_GT(selected, 0U) << "nothing was selected on any table: nothing was compared";
+}
+
+TEST(Agreement, SimilarityScore) {
+  for (const OtsuRule rule : {OtsuRule::Exact, OtsuRule::Bins100, OtsuRule::Covis}) {
+    SCOPED_TRACE("otsu rule " + std::to_string(static_cast<int>(rule)));
+    expect_identical(group_by_similarity_score, reference::similarity_score, {rule}, tables({250, 500, 1000}, 4));
+  }
+}
+
+TEST(Agreement, NearestNeighborRatio) {
+  for (const RatioRule rule : {RatioRule::Lowe, RatioRule::Literal}) {
+    for (const double threshold : {0.0, 0.5, 0.8, 1.0}) {
+      if (rule == RatioRule::Literal && threshold > 0.5) continue;  // hardly anything passes
+      if (rule == RatioRule::Lowe && threshold == 0) continue;      // nothing passes
+      SCOPED_TRACE("threshold " + std::to_string(threshold) + ", rule " + std::to_string(static_cast<int>(rule)));
+      NearestNeighborRatioOptions options;
+      options.threshold = threshold;
+      options.ratio = rule;
+      expect_identical(group_by_nearest_neighbor_ratio, reference::nearest_neighbor_ratio, options,
+                       tables({250, 500, 1000}, 4));
+    }
+  }
+}
+
+TEST(Agreement, GeometricConsistency) {
+  for (const ClusterRule rule : {ClusterRule::Star, ClusterRule::Clique}) {
+    SCOPED_TRACE("cluster rule " + std::to_string(static_cast<int>(rule)));
+    GeometricConsistencyOptions options;
+    options.cluster = rule;
+    expect_identical(group_by_geometric_consistency, reference::geometric_consistency, options,
+                     tables({250, 500, 1000}, 3));
+    options.tolerance_pr = 12;
+    expect_identical(group_by_geometric_consistency, reference::geometric_consistency, options, tables({250}, 3));
+  }
+}
+
+TEST(Agreement, HoughVoting) {
+  for (const HoughCells cells : {HoughCells::Box, HoughCells::Pr5}) {
+    SCOPED_TRACE("cells " + std::to_string(static_cast<int>(cells)));
+    HoughVotingOptions options;
+    options.cells = cells;
+    expect_identical(group_by_hough_voting, reference::hough_voting, options, tables({250, 500, 1000}, 4));
+    options.bins = 4;
+    expect_identical(group_by_hough_voting, reference::hough_voting, options, tables({250}, 3));
+  }
+}
+
+TEST(Agreement, HoughVotingWithoutCentroid) {
+  std::vector<NamedTable> on = tables({250}, 3);
+  for (auto& table : on) {
+    table.matches.source_points.rowwise() += Eigen::RowVector3d(40, -20, 75);  // else the mean is nearly the origin
+    table.matches.source_centroid.reset();
+  }
+  expect_identical(group_by_hough_voting, reference::hough_voting, {}, on);
+}
+
+TEST(Agreement, SearchOfInliers) {
+  for (const VotingForm form : {VotingForm::Paper, VotingForm::Covis, VotingForm::Rotation}) {
+    for (const OtsuRule rule : {OtsuRule::Exact, OtsuRule::Bins100, OtsuRule::Covis}) {
+      SCOPED_TRACE("form " + std::to_string(static_cast<int>(form)) + ", otsu " +
+                   std::to_string(static_cast<int>(rule)));
+      SearchOfInliersOptions options;
+      options.form = form;
+      options.otsu = rule;
+      expect_identical(group_by_search_of_inliers, reference::search_of_inliers, options, tables({250, 500}, 2));
+      options.voters = 20;
+      options.similarity = 0.8;
+      expect_identical(group_by_search_of_inliers, reference::search_of_inliers, options, tables({250, 500}, 1));
+    }
+  }
+}
+
+TEST(Agreement, SearchOfInliersOnThousandRows) {
+  expect_identical(group_by_search_of_inliers, reference::search_of_inliers, {}, tables({1000}, 1));
+}
+
+/// The order in which equal entries fall can move a few rows, so near-identity is asked for, and identity for most.
+void expect_same_spectral(const SpectralOptions& options, const std::vector<NamedTable>& on) {
+  std::size_t identical = 0;
+  for (const auto& [name, matches] : on) {
+    SCOPED_TRACE(name);
+    const Indices found = group_by_spectral(matches, options).selected;
+    const Indices expected = reference::spectral(matches, options);
+    EXPECT_GE(jaccard(found, expected), 0.98) << ::testing::PrintToString(found) << "\n"
+                                              << ::testing::PrintToString(expected);
+    EXPECT_FALSE(expected.empty());
+    if (found == expected) ++identical;
+  }
+  EXPECT_GE(identical * 10, on.size() * 9);
+}
+
+TEST(Agreement, SpectralIterative) { expect_same_spectral({}, tables({60, 120}, 3)); }
+
+TEST(Agreement, SpectralIterativeStricter) {
+  SpectralOptions options;
+  options.similarity = 0.9;
+  expect_same_spectral(options, tables({60, 250}, 2));
+}
+
+TEST(Agreement, SpectralOnce) {
+  SpectralOptions options;
+  options.once = true;
+  expect_same_spectral(options, tables({60, 250}, 2));
+}
+
+TEST(Agreement, SpectralWeighted) {
+  SpectralOptions options;
+  options.weighted = true;
+  expect_same_spectral(options, tables({60, 120}, 3));
+  options.once = true;
+  expect_same_spectral(options, tables({250}, 1));
+}
+
+TEST(Agreement, SpectralOnLargerTables) {
+  expect_same_spectral({}, {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.2, 1)});
+}
+
+TEST(Agreement, RansacFindsAsManyInliers) {
+  for (const auto& [name, matches] :
+       {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.5, 2), named_table("smooth", 500, 0.1, 3)}) {
+    SCOPED_TRACE(name);
+    RansacOptions options;
+    double found = 0, expected = 0;
+    constexpr int kRuns = 4;
+    for (int run = 1; run <= kRuns; ++run) {
+      options.seed = static_cast<std::uint64_t>(run);
+      found += static_cast<double>(group_by_ransac(matches, options).selected.size()) / kRuns;
+      expected +=
+          reference::ransac_count(matches, options.iterations, options.tolerance_pr, options.seed) / (kRuns * 1.0);
+    }
+    // Both are averages of a random count; the best of 10000 triples scatters by a few percent.
+    EXPECT_GT(found, 0.95 * expected - 1);
+    EXPECT_LT(found, 1.05 * expected + 1);
+  }
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "grouping/ransac.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::refusal_of;
+using testing::table_of_points;
+
+RansacOptions options_of(double tolerance_pr, int iterations = 200) {
+  RansacOptions options;
+  options.tolerance_pr = tolerance_pr;
+  options.iterations = iterations;
+  return options;
+}
+
+void expect_nothing(const GroupingResult& result) {
+  EXPECT_THAT(result.selected, IsEmpty());
+  EXPECT_FALSE(result.target_from_source.has_value());
+}
+
+// One triangle whose apex is 3 higher in the target. By symmetry the best motion is the shift by the means, (0, 1, 0):
+// the residuals are 1, 1 and 2.
+CorrespondenceSet raised_triangle() {
+  return table_of_points({{-3, 0, 0}, {3, 0, 0}, {0, 3, 0}}, {{-3, 0, 0}, {3, 0, 0}, {0, 6, 0}});
+}
+
+TEST(Ransac, ResidualBelowTheToleranceAgrees) {
+  EXPECT_THAT(group_by_ransac(raised_triangle(), options_of(2 + 1e-9)).selected, ElementsAre(0, 1, 2));
+  EXPECT_THAT(group_by_ransac(raised_triangle(), options_of(2 - 1e-9)).selected, ElementsAre(0, 1));
+  const GroupingResult result = group_by_ransac(raised_triangle(), options_of(1 + 1e-9));
+  EXPECT_THAT(result.selected, ElementsAre(0, 1));
+  ASSERT_TRUE(result.target_from_source.has_value());
+  EXPECT_TRUE(result.target_from_source->rotation.isIdentity(1e-12));
+  EXPECT_TRUE(result.target_from_source->translation.isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
+  EXPECT_THAT(result.scores, IsEmpty());
+}
+
+TEST(Ransac, NoAgreementGivesNoPose) { expect_nothing(group_by_ransac(raised_triangle(), options_of(1 - 1e-9))); }
+
+TEST(Ransac, ToleranceIsInPr) {
+  CorrespondenceSet matches = raised_triangle();
+  matches.resolution = 0.25;  // tolerances 1.5 and 2.5
+  EXPECT_THAT(group_by_ransac(matches, options_of(6)).selected, ElementsAre(0, 1));
+  EXPECT_THAT(group_by_ransac(matches, options_of(10)).selected, ElementsAre(0, 1, 2));
+}
+
+TEST(Ransac, FewerThanThreeMatchesGiveNothing) {
+  expect_nothing(group_by_ransac(table_of_points({{0, 0, 0}, {9, 0, 0}}, {{0, 0, 0}, {9, 0, 0}})));
+  expect_nothing(group_by_ransac(table_of_points({{0, 0, 0}}, {{0, 0, 0}})));
+}
+
+TEST(Ransac, TriplesWithoutAreaGiveNothing) {
+  const std::vector<testing::Row3> line = {{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {50, 0, 0}};
+  const std::vector<testing::Row3> plane = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}};
+  const std::vector<testing::Row3> place = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+  for (const auto& flat : {line, place}) {
+    expect_nothing(group_by_ransac(table_of_points(flat, flat), options_of(5)));
+    expect_nothing(group_by_ransac(table_of_points(flat, plane), options_of(5)));
+    expect_nothing(group_by_ransac(table_of_points(plane, flat), options_of(5)));
+  }
+}
+
+TEST(Ransac, SmallestAreaIsInSquaredPr) {
+  // Right triangles with legs a: area a^2 / 2 against 0.001 pr^2.
+  for (const double resolution : {1.0, 0.01, 50.0}) {
+    const auto triangle = [&](double leg) {
+      const double a = leg * resolution;
+      CorrespondenceSet matches = table_of_points({{0, 0, 0}, {a, 0, 0}, {0, a, 0}}, {{0, 0, 0}, {a, 0, 0}, {0, a, 0}});
+      matches.resolution = resolution;
+      return matches;
+    };
+    expect_nothing(group_by_ransac(triangle(0.0447), options_of(5)));                              // 0.000999
+    EXPECT_THAT(group_by_ransac(triangle(0.0448), options_of(5)).selected, ElementsAre(0, 1, 2));  // 0.001004
+  }
+}
+
+TEST(Ransac, FindsTheMotionOfTheMajority) {
+  // Rows 0, 2, 4, 5 make a quarter turn about z and move up by 7; rows 1 and 3 go astray.
+  const CorrespondenceSet matches =
+      table_of_points({{0, 0, 0}, {5, 5, 5}, {40, 0, 0}, {9, 9, 9}, {0, 30, 0}, {0, 0, 20}},
+                      {{0, 0, 7}, {90, 5, 5}, {0, 40, 7}, {9, -80, 9}, {-30, 0, 7}, {0, 0, 27}});
+  const GroupingResult result = group_by_ransac(matches);
+  EXPECT_THAT(result.selected, ElementsAre(0, 2, 4, 5));
+  Eigen::Matrix3d turn;
+  turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  ASSERT_TRUE(result.target_from_source.has_value());
+  EXPECT_TRUE(result.target_from_source->rotation.isApprox(turn, 1e-9));
+  EXPECT_TRUE(result.target_from_source->translation.isApprox(Eigen::Vector3d(0, 0, 7), 1e-9));
+}
+
+TEST(Ransac, MirroredTargetGetsAProperRotation) {
+  CorrespondenceSet matches = testing::full_table(12);
+  matches.target_points = matches.source_points;
+  matches.target_points.col(2) *= -1;
+  const GroupingResult result = group_by_ransac(matches);
+  ASSERT_TRUE(result.target_from_source.has_value());
+  EXPECT_TRUE(is_rotation(result.target_from_source->rotation, 1e-9));
+}
+
+TEST(Ransac, PoseIsThatOfATripleAndSelectsWhatAgreesWithIt) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const CorrespondenceSet matches = testing::synthetic(8, 1.0, seed).matches;
+    const GroupingResult result = group_by_ransac(matches);
+    ASSERT_TRUE(result.target_from_source.has_value());
+    const RigidTransform pose = *result.target_from_source;
+    bool of_a_triple = false;
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < a; ++b)
+        for (int c = 0; c < b; ++c) {
+          const auto fitted = fit_rigid_transform(matches, {c, b, a});
+          of_a_triple = of_a_triple || (fitted && fitted->rotation.isApprox(pose.rotation, 1e-12) &&
+                                        fitted->translation.isApprox(pose.translation, 1e-12));
+        }
+    EXPECT_TRUE(of_a_triple);
+    Indices agreeing;
+    for (int row = 0; row < 8; ++row)
+      if ((pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose()).norm() < 5)
+        agreeing.push_back(row);
+    EXPECT_EQ(result.selected, agreeing);
+  }
+}
+
+TEST(Ransac, FirstTripleWithTheLargestCountStays) {
+  // Every triple of an exactly moved set agrees with all rows: further iterations must not change the pose. The noise
+  // is far below the tolerance but tells the triples apart.
+  SyntheticOptions problem;
+  problem.matches = 10;
+  problem.inlier_ratio = 1;
+  problem.noise_pr = 1e-4;
+  const CorrespondenceSet matches = make_synthetic_problem(problem).matches;
+  const GroupingResult first = group_by_ransac(matches, options_of(5, 1));
+  ASSERT_EQ(first.selected.size(), 10U);
+  for (const int iterations : {2, 10, 100}) {
+    const GroupingResult later = group_by_ransac(matches, options_of(5, iterations));
+    EXPECT_EQ(later.target_from_source->rotation, first.target_from_source->rotation);
+  }
+}
+
+TEST(Ransac, MoreIterationsNeverFindLess) {
+  const CorrespondenceSet matches = testing::synthetic(60, 0.2, 9).matches;
+  std::size_t before = 0;
+  for (const int iterations : {1, 3, 10, 30, 100, 300, 1000, 3000}) {
+    const std::size_t found = group_by_ransac(matches, options_of(5, iterations)).selected.size();
+    EXPECT_GE(found, before) << iterations;
+    before = found;
+  }
+  EXPECT_GE(before, 12U);
+}
+
+TEST(Ransac, SeedChoosesTheTriples) {
+  const CorrespondenceSet matches = testing::synthetic(100, 0.1, 4).matches;
+  RansacOptions one = options_of(5, 50), other = one;
+  other.seed = 2;
+  EXPECT_EQ(group_by_ransac(matches, one).selected, group_by_ransac(matches, one).selected);
+  EXPECT_NE(group_by_ransac(matches, one).selected, group_by_ransac(matches, other).selected);
+}
+
+TEST(Ransac, OptionsOutOfRangeAreNamed) {
+  const CorrespondenceSet matches = raised_triangle();
+  EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(0)); }), HasSubstr("tolerance_pr"));
+  EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(std::nan(""))); }), HasSubstr("tolerance_pr"));
+  EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(5, 0)); }), HasSubstr("iterations"));
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grouping/geometric_consistency.h"
+#include "grouping/hough_voting.h"
+#include "grouping/nearest_neighbor_ratio.h"
+#include "grouping/otsu.h"
+#include "grouping/search_of_inliers.h"
+#include "grouping/similarity_score.h"
+#include "grouping/spectral.h"
+#include "kernel/correspondence_set.h"
+
+/// Every grouper once more, written straight from its definition: slow double loops, no shared code. An oracle for
+/// tests; options are not validated and all columns must be there.
+namespace corral::reference {
+
+Indices rows_by_otsu(const std::vector<double>& scores, OtsuRule rule);
+
+Indices similarity_score(const CorrespondenceSet& matches, const SimilarityScoreOptions& options);
+Indices nearest_neighbor_ratio(const CorrespondenceSet& matches, const NearestNeighborRatioOptions& options);
+Indices spectral(const CorrespondenceSet& matches, const SpectralOptions& options);
+Indices geometric_consistency(const CorrespondenceSet& matches, const GeometricConsistencyOptions& options);
+Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options);
+Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options);
+
+/// Rows in agreement with the best of `trials` random triples. Its draws are its own, so only the count compares.
+int ransac_count(const CorrespondenceSet& matches, int trials, double tolerance_pr, std::uint64_t seed);
+
+}  // namespace corral::reference
