@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
+#include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "grouping/registry.h"
@@ -19,11 +17,13 @@
 namespace corral {
 namespace {
 
+using testing::easy_problem;
 using testing::full_table;
 using testing::harsh_table;
 using ::testing::HasSubstr;
 using testing::refusal_of;
 using testing::synthetic;
+using testing::varied_tables;
 
 class GrouperContract : public ::testing::TestWithParam<std::string> {
  protected:
@@ -42,34 +42,6 @@ std::vector<std::string> names() {
 }
 INSTANTIATE_TEST_SUITE_P(Groupers, GrouperContract, ::testing::ValuesIn(names()),
                          [](const auto& test) { return test.param; });
-
-/// Low noise, four of five matches right.
-SyntheticProblem easy_problem(std::uint64_t seed) {
-  SyntheticOptions options;
-  options.matches = 400;
-  options.inlier_ratio = 0.8;
-  options.noise_pr = 0.2;
-  options.frame_noise_deg = 0.5;
-  options.seed = seed;
-  return make_synthetic_problem(options);
-}
-
-/// The tables on which a promise about the form of the answer is checked.
-std::vector<CorrespondenceSet> varied_tables() {
-  std::vector<CorrespondenceSet> tables;
-  for (int rows = 0; rows <= 6; ++rows) tables.push_back(full_table(rows));
-  for (const double ratio : {0.05, 0.5, 1.0}) tables.push_back(harsh_table(200, ratio, 3));
-  CorrespondenceSet one_place = full_table(8);  // eight copies of one match
-  for (int row = 1; row < 8; ++row) {
-    one_place.source_points.row(row) = one_place.source_points.row(0);
-    one_place.target_points.row(row) = one_place.target_points.row(0);
-  }
-  tables.push_back(one_place);
-  CorrespondenceSet frameless = full_table(8);
-  for (auto& frame : frameless.source_frames) frame.setZero();
-  tables.push_back(frameless);
-  return tables;
-}
 
 TEST(Registry, HoldsTheSevenMethodsInTheOrderOfThePaper) {
   EXPECT_THAT(names(), ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si"));

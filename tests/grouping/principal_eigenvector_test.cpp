@@ -101,6 +101,15 @@ TEST(PrincipalEigenvector, EquallyHeavyPartsTheLowestIndexWins) {
   EXPECT_LT((principal_eigenvector(matrix, ones(matrix)) - expected.reverse()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(PrincipalEigenvector, EqualPathsTheLowestIndexWins) {
+  // 0 - 2 - 4 and 1 - 3 - 5: the row sums of the second exceed the eigenvalue 1 + sqrt 2 of the first.
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(6, 6);
+  for (const int i : {0, 1, 2, 3}) matrix(i, i + 2) = matrix(i + 2, i) = 1;
+  Eigen::VectorXd expected(6);
+  expected << 0.5, 0, std::sqrt(0.5), 0, 0.5, 0;
+  EXPECT_LT((principal_eigenvector(matrix, ones(matrix)) - expected).cwiseAbs().maxCoeff(), 1e-10);
+}
+
 TEST(PrincipalEigenvector, NearlyEqualEigenvalues) {
   // Two cliques of 20 joined by one edge: the second eigenvalue is within 0.5 % of the first. The answer is symmetric.
   Eigen::MatrixXd matrix = cliques({20, 20});

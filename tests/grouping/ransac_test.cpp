@@ -36,6 +36,7 @@ CorrespondenceSet raised_triangle() {
 TEST(Ransac, ResidualBelowTheToleranceAgrees) {
   EXPECT_THAT(group_by_ransac(raised_triangle(), options_of(2 + 1e-9)).selected, ElementsAre(0, 1, 2));
   EXPECT_THAT(group_by_ransac(raised_triangle(), options_of(2 - 1e-9)).selected, ElementsAre(0, 1));
+  EXPECT_THAT(group_by_ransac(raised_triangle(), options_of(2)).selected, ElementsAre(0, 1));
   const GroupingResult result = group_by_ransac(raised_triangle(), options_of(1 + 1e-9));
   EXPECT_THAT(result.selected, ElementsAre(0, 1));
   ASSERT_TRUE(result.target_from_source.has_value());
@@ -44,7 +45,10 @@ TEST(Ransac, ResidualBelowTheToleranceAgrees) {
   EXPECT_THAT(result.scores, IsEmpty());
 }
 
-TEST(Ransac, NoAgreementGivesNoPose) { expect_nothing(group_by_ransac(raised_triangle(), options_of(1 - 1e-9))); }
+TEST(Ransac, NoAgreementGivesNoPose) {
+  expect_nothing(group_by_ransac(raised_triangle(), options_of(1 - 1e-9)));
+  expect_nothing(group_by_ransac(raised_triangle(), options_of(1)));
+}
 
 TEST(Ransac, ToleranceIsInPr) {
   CorrespondenceSet matches = raised_triangle();

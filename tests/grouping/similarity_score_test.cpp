@@ -44,8 +44,7 @@ TEST(SimilarityScore, OtsuRuleIsAnOption) {
 }
 
 TEST(SimilarityScore, AbsentColumnIsNamed) {
-  const std::string text = refusal_of([] { group_by_similarity_score(table_of_features({}, {})); });
-  EXPECT_EQ(text, "");  // an empty table lacks nothing
+  EXPECT_EQ(refusal_of([] { group_by_similarity_score(CorrespondenceSet()); }), "");  // an empty table lacks nothing
   const std::string refusal = refusal_of([] { group_by_similarity_score(testing::table_on_line({0, 1}, {0, 1})); });
   EXPECT_THAT(refusal, HasSubstr("ss"));
   EXPECT_THAT(refusal, HasSubstr("column feature_distance"));

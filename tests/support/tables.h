@@ -95,6 +95,34 @@ inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint
   return table;
 }
 
+/// Low noise, four of five matches right.
+inline SyntheticProblem easy_problem(std::uint64_t seed) {
+  SyntheticOptions options;
+  options.matches = 400;
+  options.inlier_ratio = 0.8;
+  options.noise_pr = 0.2;
+  options.frame_noise_deg = 0.5;
+  options.seed = seed;
+  return make_synthetic_problem(options);
+}
+
+/// The tables on which a promise about the form of the answer is checked.
+inline std::vector<CorrespondenceSet> varied_tables() {
+  std::vector<CorrespondenceSet> tables;
+  for (int rows = 0; rows <= 6; ++rows) tables.push_back(full_table(rows));
+  for (const double ratio : {0.05, 0.5, 1.0}) tables.push_back(harsh_table(200, ratio, 3));
+  CorrespondenceSet one_place = full_table(8);  // eight copies of one match
+  for (int row = 1; row < 8; ++row) {
+    one_place.source_points.row(row) = one_place.source_points.row(0);
+    one_place.target_points.row(row) = one_place.target_points.row(0);
+  }
+  tables.push_back(one_place);
+  CorrespondenceSet frameless = full_table(8);
+  for (auto& frame : frameless.source_frames) frame.setZero();
+  tables.push_back(frameless);
+  return tables;
+}
+
 /// All lengths, the ruler included, times a factor.
 inline CorrespondenceSet scaled(CorrespondenceSet table, double factor) {
   table.source_points *= factor;

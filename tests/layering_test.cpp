@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// The plan of the house, kept by itself: who may include whom, which library lives where, what every file owes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+const fs::path kRoot = CORRAL_SOURCE_DIR;
+
+struct Room {
+  Names includes;   ///< rooms whose headers it may include
+  Names libraries;  ///< owners of <...> headers that it may include, beside the standard library
+};
+
+// Rooms by folder; the longest that fits a file is its room.
+const std::map<std::string, Room> kRooms = {
+    {"kernel", {{"kernel"}, {"Eigen"}}},
+    {"kernel/surface", {{"kernel", "kernel/surface"}, {"Eigen", "CGAL", "OpenMesh", "flann", "boost"}}},
+    {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
+    {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
+    {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen"}}},
+    {"apps", {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"}, {"Eigen", "CLI", "nlohmann"}}},
+};
+const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres"};
+const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
+
+struct Include {
+  std::string file;
+  bool quoted;
+  std::string name;
+};
+
+std::string read(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::string room_of(const std::string& file) {
+  std::string best;
+  for (const auto& [room, rules] : kRooms)
+    if (file.rfind(room + "/", 0) == 0 && room.size() > best.size()) best = room;
+  return best;
+}
+
+/// Every C++ file below the rooms and tests/, relative to the root.
+std::vector<std::string> source_files() {
+  std::vector<std::string> files;
+  for (const char* top : {"kernel", "grouping", "refine", "io", "apps", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top))
+      if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
+        files.push_back(fs::relative(entry.path(), kRoot).generic_string());
+  return files;
+}
+
+std::vector<Include> includes() {
+  static const std::regex pattern("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"]");
+  std::vector<Include> found;
+  for (const std::string& file : source_files()) {
+    std::istringstream lines(read(kRoot / file));
+    std::smatch match;
+    for (std::string line; std::getline(lines, line);)
+      if (std::regex_search(line, match, pattern)) found.push_back({file, match[1] == "\"", match[2]});
+  }
+  return found;
+}
+
+bool is_header(const std::string& file) { return fs::path(file).extension() == ".h"; }
+
+TEST(Layering, RoomsIncludeOnlyWhatThePlanAllows) {
+  int checked = 0;
+  for (const Include& include : includes()) {
+    const std::string room = room_of(include.file);
+    if (!include.quoted || room.empty()) continue;
+    ++checked;
+    const std::string other = room_of(include.name);
+    EXPECT_TRUE(kRooms.at(room).includes.count(other)) << include.file << " includes " << include.name;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(Layering, LibrariesStayInTheirRooms) {
+  int checked = 0;
+  for (const Include& include : includes()) {
+    const std::string room = room_of(include.file);
+    const std::string owner = include.name.substr(0, include.name.find('/'));
+    const bool is_library = include.name.find('/') != std::string::npos && owner != "sys";
+    if (include.quoted || room.empty()) continue;
+    ++checked;
+    if (is_library) {
+      EXPECT_TRUE(kRooms.at(room).libraries.count(owner)) << include.file << " includes " << include.name;
+    }
+    if (room != "apps") {
+      EXPECT_FALSE(kOnlyInApps.count(include.name)) << include.file << " includes " << include.name;
+    }
+    if (is_header(include.file)) {
+      EXPECT_FALSE(kNeverInHeaders.count(owner)) << include.file << " includes " << include.name;
+    }
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(Layering, EveryFileIsLicensedAndOfAReadableLength) {
+  for (const std::string& file : source_files()) {
+    const std::string text = read(kRoot / file);
+    EXPECT_EQ(text.rfind("// SPDX-License-Identifier: MIT\n", 0), 0u) << file;
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << file;
+    if (is_header(file)) {
+      EXPECT_NE(text.find("#pragma once"), std::string::npos) << file;
+    }
+  }
+}
+
+TEST(Layering, TheTopLevelIsTheAgreedOne) {
+  const Names agreed = {"CMakeLists.txt",
+                        "CMakePresets.json",
+                        "LICENSE",
+                        "CITATION.cff",
+                        "README.md",
+                        "kernel",
+                        "grouping",
+                        "refine",
+                        "io",
+                        "apps",
+                        "tests",
+                        "data",
+                        "paper",
+                        "build"};
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    const std::string name = entry.path().filename().string();
+    if (name.front() != '.') {
+      EXPECT_TRUE(agreed.count(name)) << name;
+    }
+  }
+}
+
+TEST(Layering, EveryCitationIsInTheBibliography) {
+  const std::string bibliography = read(kRoot / "paper/references.bib");
+  static const std::regex citation("\\[([a-z]+[0-9]{4}[a-z]+)\\]");
+  std::vector<std::string> files = source_files();
+  for (const char* page : {"README.md", "data/README.md", "paper/README.md"}) files.emplace_back(page);
+  int found = 0;
+  for (const std::string& file : files) {
+    const std::string text = read(kRoot / file);
+    for (std::sregex_iterator it(text.begin(), text.end(), citation), end; it != end; ++it, ++found)
+      EXPECT_NE(bibliography.find("{" + (*it)[1].str() + ","), std::string::npos) << file << ": " << (*it)[1];
+  }
+  EXPECT_GT(found, 20);
+}
+
+TEST(Layering, TheReadmeListsTheMethodsAsTheProgramDoes) {
+  std::FILE* pipe = popen(CORRAL_PROGRAM " groupers --markdown", "r");
+  ASSERT_NE(pipe, nullptr);
+  std::string table;
+  char buffer[4096];
+  for (std::size_t count; (count = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) table.append(buffer, count);
+  ASSERT_EQ(pclose(pipe), 0);
+  EXPECT_THAT(table, ::testing::StartsWith("| method |"));
+  EXPECT_NE(read(kRoot / "README.md").find(table), std::string::npos) << "the table of README.md should be:\n" << table;
+}
+
+}  // namespace
