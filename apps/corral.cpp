@@ -33,12 +33,14 @@ int run_action(const corral::Action& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Corral: which 3D correspondence grouper should I use, and how well does the surface align if I do?", "corral");
+  CLI::App app("Corral: which 3D correspondence grouper should I use, and how well does the surface align if I do?",
+               "corral");
   app.require_subcommand(1);
   app.set_version_flag("--version", "corral " CORRAL_VERSION);
   app.footer(
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded so, 1 anything else.\n"
-      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest other.\n"
+      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest "
+      "other.\n"
       "'corral COMMAND --help' has examples.");
   corral::Action action;
   corral::add_run(app, action);

@@ -27,8 +27,8 @@ TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet&
   return timed;
 }
 
-MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper, const CorrespondenceSet& matches,
-                             const std::optional<PairTruth>& truth, int repeat) {
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat) {
   MethodRecord record;
   record.method = name;
   try {
@@ -36,7 +36,8 @@ MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& g
     record.found = std::move(timed.found);
     record.time_ms = timed.time_ms;
     if (truth)
-      record.score = score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
+      record.score =
+          score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
     record.pose = refine_rigid(matches, record.found.selected);
     if (truth && record.pose.target_from_source)
       record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);

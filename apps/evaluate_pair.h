@@ -30,7 +30,7 @@ struct MethodRecord {
   std::string method;
   std::string failure;  ///< why the method gave no answer; empty if it did
   GroupingResult found;
-  double time_ms = 0;  ///< median of the timed calls, the grouping alone
+  double time_ms = 0;                  ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
   std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
@@ -46,7 +46,7 @@ struct TimedGrouping {
 TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat);
 
 /// Groups, scores, refines and judges; a method that refuses the table is a record of that.
-MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper, const CorrespondenceSet& matches,
-                             const std::optional<PairTruth>& truth, int repeat);
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat);
 
 }  // namespace corral

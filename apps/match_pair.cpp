@@ -33,7 +33,8 @@ Descriptors describe(const Mesh& mesh, const std::string& side, double resolutio
   const PointIndex index(mesh.vertices);
   observe("keypoints of the " + side);
   Stopwatch watch;
-  const Keypoints keypoints = detect_harris(mesh, index, resolution, {settings.keypoint_radius_pr, settings.support_radius_pr});
+  const Keypoints keypoints =
+      detect_harris(mesh, index, resolution, {settings.keypoint_radius_pr, settings.support_radius_pr});
   report.keypoints_ms = watch.lap_ms();
   observe("normals of the " + side);
   const Points normals = estimate_normals(mesh, index);
@@ -55,7 +56,8 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
     if (side.keypoints > 0) return;
     const std::string radius = " radius is " + to_text(report.resolution / side.resolution);
     if (side.candidates == 0)
-      hints.push_back("no keypoint on the " + name + ": the keypoint" + radius + " x " + to_text(settings.keypoint_radius_pr) +
+      hints.push_back("no keypoint on the " + name + ": the keypoint" + radius + " x " +
+                      to_text(settings.keypoint_radius_pr) +
                       " of its own pr, use about 3 pr (a flat surface has none)");
     else
       hints.push_back("no keypoint of the " + name + " could be described: the support" + radius + " x " +
@@ -69,7 +71,8 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
 
 void check_resolution_rule(const std::string& rule) {
   if (rule != "mean" && rule != "source" && rule != "target" && !as_length(rule))
-    throw InvalidInput("match", "resolution", "'" + rule + "'", "mean|source|target or a length above zero in mesh units");
+    throw InvalidInput("match", "resolution", "'" + rule + "'",
+                       "mean|source|target or a length above zero in mesh units");
 }
 
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,

@@ -30,7 +30,7 @@ struct SurfaceReport {
 
 struct MatchReport {
   SurfaceReport source, target;
-  double resolution = 0;  ///< of the pair
+  double resolution = 0;                           ///< of the pair
   double keypoint_radius = 0, support_radius = 0;  ///< mesh units
   int matches = 0;
   double matching_ms = 0;

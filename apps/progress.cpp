@@ -28,7 +28,8 @@ void Progress::begin(const std::string& what, double steps) {
     left = ", about " + std::to_string(static_cast<int>(std::ceil(elapsed * (1 - share) / share))) + " s left";
   }
   std::fprintf(stderr, "\r\033[K[%s%s] %3.0f %%  %s%s", std::string(static_cast<std::size_t>(full), '#').c_str(),
-               std::string(static_cast<std::size_t>(kWidth - full), '.').c_str(), 100 * share, what.c_str(), left.c_str());
+               std::string(static_cast<std::size_t>(kWidth - full), '.').c_str(), 100 * share, what.c_str(),
+               left.c_str());
   std::fflush(stderr);
 }
 

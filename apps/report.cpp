@@ -41,13 +41,13 @@ void add_errors(Json& json, const std::optional<PoseErrors>& errors) {
 }
 
 std::string surface_line(const char* name, const SurfaceReport& side) {
-  return std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) + " faces, pr " +
-         to_text(side.resolution) + "; " + std::to_string(side.candidates) + " keypoints, dropped " +
+  return std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) +
+         " faces, pr " + to_text(side.resolution) + "; " + std::to_string(side.candidates) + " keypoints, dropped " +
          std::to_string(side.dropped_small_support) + " with fewer than 10 neighbours, " +
          std::to_string(side.dropped_no_frame) + " without a frame, " + std::to_string(side.dropped_no_histogram) +
-         " without a histogram; " + std::to_string(side.keypoints) + " described (" + fixed(side.resolution_ms, 0) + " + " +
-         fixed(side.keypoints_ms, 0) + " + " + fixed(side.normals_ms, 0) + " + " + fixed(side.descriptors_ms, 0) +
-         " ms for resolution, keypoints, normals, descriptors)\n";
+         " without a histogram; " + std::to_string(side.keypoints) + " described (" + fixed(side.resolution_ms, 0) +
+         " + " + fixed(side.keypoints_ms, 0) + " + " + fixed(side.normals_ms, 0) + " + " +
+         fixed(side.descriptors_ms, 0) + " ms for resolution, keypoints, normals, descriptors)\n";
 }
 
 /// What a row of the table of methods holds, in its order, with so many decimals for people (-1: a whole number).
@@ -68,28 +68,26 @@ std::vector<Cell> cells(const MethodRecord& record) {
   return {{selected, 0}, {precision, 3}, {recall, 3}, {f1, 3}, {time, 2}, {rotation, 3}, {translation, 3}, {rmse, 3}};
 }
 
-const std::vector<std::string> kColumns = {"method", "selected", "precision", "recall", "f1", "time_ms",
-                                           "rotation_error_deg", "translation_error_pr", "rmse_pr", "status"};
+const std::vector<std::string> kColumns = {"method",  "selected", "precision",          "recall",
+                                           "f1",      "time_ms",  "rotation_error_deg", "translation_error_pr",
+                                           "rmse_pr", "status"};
 
 }  // namespace
 
 Json to_json(const RigidTransform& transform) {
   Json rows = Json::array();
   for (int row = 0; row < 3; ++row)
-    rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2), transform.translation(row)});
+    rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2),
+                    transform.translation(row)});
   rows.push_back({0.0, 0.0, 0.0, 1.0});
   return rows;
 }
 
 Json to_json(const MatchReport& report) {
-  return {{"resolution", report.resolution},
-          {"keypoint_radius", report.keypoint_radius},
-          {"support_radius", report.support_radius},
-          {"source", to_json(report.source)},
-          {"target", to_json(report.target)},
-          {"matches", report.matches},
-          {"matching_ms", report.matching_ms},
-          {"hints", report.hints}};
+  return {{"resolution", report.resolution},         {"keypoint_radius", report.keypoint_radius},
+          {"support_radius", report.support_radius}, {"source", to_json(report.source)},
+          {"target", to_json(report.target)},        {"matches", report.matches},
+          {"matching_ms", report.matching_ms},       {"hints", report.hints}};
 }
 
 Json to_json(const GroupingScore& score) {
@@ -154,7 +152,8 @@ void TextTable::add(std::vector<std::string> row) { rows_.push_back(std::move(ro
 std::string TextTable::str() const {
   std::vector<std::size_t> widths(rows_.front().size(), 0);
   for (const auto& row : rows_)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], std::max<std::size_t>(row[i].size(), 1));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], std::max<std::size_t>(row[i].size(), 1));
   std::string text;
   for (const auto& row : rows_) {
     std::string line;
@@ -195,7 +194,8 @@ std::string fixed(std::optional<double> value, int decimals) {
 }
 
 std::string methods_text(const std::vector<MethodRecord>& records) {
-  TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr", "RMSE pr", "status"});
+  TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr",
+                   "RMSE pr", "status"});
   for (const MethodRecord& record : records) {
     std::vector<std::string> row{record.method};
     for (const Cell& cell : cells(record)) row.push_back(fixed(cell.value, cell.decimals));
@@ -213,7 +213,8 @@ std::string methods_csv(const std::vector<MethodRecord>& records) {
     text += record.method;
     for (const Cell& cell : cells(record)) text += "," + (cell.value ? to_text(*cell.value) : "");
     std::string status = record.status();  // a message may hold what would end the field
-    std::replace_if(status.begin(), status.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
+    std::replace_if(
+        status.begin(), status.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
     text += "," + status + "\n";
   }
   return text;

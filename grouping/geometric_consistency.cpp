@@ -26,9 +26,12 @@ class ConsistencyTest {
   const Eigen::ArrayXd& differences(int seed) {
     const auto p = matches_.source_points.array();
     const auto q = matches_.target_points.array();
-    difference_ = (((p.col(0) - p(seed, 0)).square() + (p.col(1) - p(seed, 1)).square() + (p.col(2) - p(seed, 2)).square()).sqrt() -
-                   ((q.col(0) - q(seed, 0)).square() + (q.col(1) - q(seed, 1)).square() + (q.col(2) - q(seed, 2)).square()).sqrt())
-                      .abs();
+    difference_ =
+        (((p.col(0) - p(seed, 0)).square() + (p.col(1) - p(seed, 1)).square() + (p.col(2) - p(seed, 2)).square())
+             .sqrt() -
+         ((q.col(0) - q(seed, 0)).square() + (q.col(1) - q(seed, 1)).square() + (q.col(2) - q(seed, 2)).square())
+             .sqrt())
+            .abs();
     return difference_;
   }
 

@@ -23,7 +23,8 @@ struct GeometricConsistencyOptions {
   static void visit_fields(Self& self, Visitor&& visit) {
     visit(OptionField{"tolerance_pr", "pr", "3", "difference of distances below which two matches agree", above(0)},
           self.tolerance_pr);
-    visit(OptionField{"cluster", "", "star", "agreement with the seed (star) or with every member (clique)"}, self.cluster);
+    visit(OptionField{"cluster", "", "star", "agreement with the seed (star) or with every member (clique)"},
+          self.cluster);
   }
 };
 
@@ -31,8 +32,9 @@ struct GeometricConsistencyOptions {
 ///
 ///   d(i,j) = | |p_i - p_j| - |p'_i - p'_j| |     C_i = {i} + { j : d(i,j) < tolerance }     selected = argmax_i |C_i|
 ///
-/// clique    Matches in ascending order of feature distance (ties: lower row); each seed not yet in a cluster collects the
-///           free matches that agree with all collected so far; clusters of more than 3 are kept, the largest is selected.
+/// clique    Seeds in ascending order of feature distance (ties: lower row), each unless it is in a cluster already; a seed
+///           collects, in the same order over all free matches, those that agree with all collected so far. Clusters of
+///           more than 3 are kept, the members of others stay free; the largest is selected, the first among equals.
 /// Source    [chen2007consistency]; form and value [yang2017evaluation] eq. (5), Table 1.
 /// Reads     source_points, target_points, resolution; feature_distance only for the clique.
 /// Returns   selected only.

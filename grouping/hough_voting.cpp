@@ -34,7 +34,7 @@ std::vector<Vote> cast_votes(const CorrespondenceSet& matches) {
     const LocalReferenceFrame& source = matches.source_frames[static_cast<std::size_t>(row)];
     const LocalReferenceFrame& target = matches.target_frames[static_cast<std::size_t>(row)];
     if (!is_valid_frame(source) || !is_valid_frame(target)) continue;
-    const Eigen::Vector3d local = source * (centroid - matches.source_points.row(row).transpose());  // v_i
+    const Eigen::Vector3d local = source * (centroid - matches.source_points.row(row).transpose());   // v_i
     votes.push_back({row, target.transpose() * local + matches.target_points.row(row).transpose()});  // g_i
   }
   return votes;

@@ -30,7 +30,8 @@ struct HoughVotingOptions {
 ///
 ///   v_i = L_i (C - p_i)      g_i = L'_i^T v_i + p'_i      selected = { i : g_i in the fullest cell or its 6 face neighbours }
 ///
-/// pr5       selected are the votes that have a share in the cell with the largest sum of weights, no neighbours.
+/// pr5       selected are the votes that have a share in the cell with the largest sum of weights, no neighbours. The cells
+///           go on beyond the corner of the box: a vote near it shares with the cell below.
 /// Source    [tombari2010hough]; form [yang2017evaluation] eq. (6)-(7), which prints R twice: the second is its transpose.
 /// Reads     source_points, target_points, source_frames, target_frames, resolution, source_centroid (default: the mean
 ///           of the source points).

@@ -22,7 +22,8 @@ struct NearestNeighborRatioOptions {
   template <class Self, class Visitor>
   static void visit_fields(Self& self, Visitor&& visit) {
     visit(OptionField{"threshold", "", "0.8", "bound of the ratio test", within(0, 1)}, self.threshold);
-    visit(OptionField{"ratio", "", "literal", "d1/d2 <= threshold (lowe) or 1 - d1/d2 >= threshold (literal)"}, self.ratio);
+    visit(OptionField{"ratio", "", "literal", "d1/d2 <= threshold (lowe) or 1 - d1/d2 >= threshold (literal)"},
+          self.ratio);
   }
 };
 

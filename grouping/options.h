@@ -72,17 +72,24 @@ std::vector<std::string> choices() {
 
 template <class Value>
 std::string accepted_values(const OptionField& field) {
-  if constexpr (std::is_same_v<Value, bool>) return accepted_text({"false", "true"});
-  else if constexpr (std::is_enum_v<Value>) return accepted_text(choices<Value>());
-  else return accepted_text(field.range, std::is_integral_v<Value>);
+  if constexpr (std::is_same_v<Value, bool>)
+    return accepted_text({"false", "true"});
+  else if constexpr (std::is_enum_v<Value>)
+    return accepted_text(choices<Value>());
+  else
+    return accepted_text(field.range, std::is_integral_v<Value>);
 }
 
 template <class Value>
 std::string value_text(const Value& value) {
-  if constexpr (std::is_same_v<Value, bool>) return value ? "true" : "false";
-  else if constexpr (std::is_enum_v<Value>) return choices<Value>()[static_cast<std::size_t>(value)];
-  else if constexpr (std::is_integral_v<Value>) return std::to_string(value);
-  else return to_text(value);
+  if constexpr (std::is_same_v<Value, bool>)
+    return value ? "true" : "false";
+  else if constexpr (std::is_enum_v<Value>)
+    return choices<Value>()[static_cast<std::size_t>(value)];
+  else if constexpr (std::is_integral_v<Value>)
+    return std::to_string(value);
+  else
+    return to_text(value);
 }
 
 /// False if the text is not a value of the type (its range is checked by validate_options).

@@ -10,8 +10,8 @@
 namespace corral {
 namespace {
 
-/// The cut of `count` ordered classes that maximises n1 n2 (m1 - m2)^2: the last class of the lower part, or -1 if no cut
-/// has two non-empty sides. weight(i) and value(i) describe class i.
+/// The cut of `count` ordered classes that maximises n1 n2 (m1 - m2)^2: the last class of the lower part, or -1 if no
+/// cut has two non-empty sides. weight(i) and value(i) describe class i.
 template <class Weight, class Value>
 int best_cut(int count, Weight weight, Value value) {
   double total_weight = 0, total = 0;
@@ -61,27 +61,29 @@ Indices select_exact(const std::vector<double>& scores) {
   return rows_where(scores, [&](double score) { return score >= threshold; });
 }
 
-/// Histogram over [low, high] and its best cut. Returns the last bin of the lower class, or -1.
+/// The bin of a score among `bins` equal ones over [low, high]; what lies outside belongs to the first or the last.
+int bin_of(double score, double low, double high, int bins) {
+  return static_cast<int>(std::clamp(std::floor((score - low) / (high - low) * bins), 0.0, bins - 1.0));
+}
+
+/// The best cut of a histogram over [low, high]: the last bin of the lower class, or -1.
 int histogram_cut(const std::vector<double>& scores, double low, double high, int bins) {
   std::vector<double> counts(static_cast<std::size_t>(bins), 0);
-  for (const double score : scores) {
-    const double position = std::floor((score - low) / (high - low) * bins);
-    counts[static_cast<std::size_t>(std::clamp(position, 0.0, bins - 1.0))] += 1;
-  }
+  for (const double score : scores) counts[static_cast<std::size_t>(bin_of(score, low, high, bins))] += 1;
   return best_cut(
       bins, [&](int i) { return counts[static_cast<std::size_t>(i)]; }, [](int i) { return static_cast<double>(i); });
 }
 
 Indices select_bins100(const std::vector<double>& scores) {
-  const auto [low, high] = std::minmax_element(scores.begin(), scores.end());
-  if (!(*high > *low)) return all_rows(scores);
-  const int cut = histogram_cut(scores, *low, *high, 100);
-  const double threshold = *low + cut * ((*high - *low) / 100);
-  return rows_where(scores, [&](double score) { return score >= threshold; });
+  const auto extremes = std::minmax_element(scores.begin(), scores.end());
+  const double low = *extremes.first, high = *extremes.second;
+  if (!(high > low)) return all_rows(scores);
+  const int cut = histogram_cut(scores, low, high, 100);
+  return rows_where(scores, [&](double score) { return bin_of(score, low, high, 100) >= cut; });
 }
 
 Indices select_covis(const std::vector<double>& scores) {
-  const int bins = std::max(2, static_cast<int>(std::lround(std::sqrt(static_cast<double>(scores.size())))));
+  const int bins = static_cast<int>(std::lround(std::sqrt(static_cast<double>(scores.size()))));
   const int cut = histogram_cut(scores, 0, 1, bins);
   if (cut < 0) return all_rows(scores);
   const double threshold = cut / (bins - 1.0);
@@ -95,9 +97,12 @@ Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule) {
     if (!std::isfinite(score)) throw InvalidInput("select_by_otsu", "score", score, "a finite number");
   if (scores.empty()) return {};
   switch (rule) {
-    case OtsuRule::Bins100: return select_bins100(scores);
-    case OtsuRule::Covis: return select_covis(scores);
-    case OtsuRule::Exact: break;
+    case OtsuRule::Bins100:
+      return select_bins100(scores);
+    case OtsuRule::Covis:
+      return select_covis(scores);
+    case OtsuRule::Exact:
+      break;
   }
   return select_exact(scores);
 }

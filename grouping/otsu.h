@@ -24,8 +24,8 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// bins100   the threshold is the lower edge of the last bin of the lower class, so that bin is accepted too.
 /// covis     the threshold is index / (bins - 1), index the last bin of the lower class; accepts score > threshold.
 ///
-/// All scores equal (for the histograms: all in one bin): all rows.
-/// Source    [otsu1979threshold] eq. (12)-(18); bins100 and covis after the programs of [yang2017evaluation], [buch2014search].
+/// All scores equal (for the histograms: all in one bin): all rows. covis puts scores outside [0, 1] into the end bins.
+/// Source    [otsu1979threshold] eq. (12)-(18); bins100 after the program of [yang2017evaluation], covis of [buch2014search].
 /// Departs   bins100 subtracts the smallest score before it indexes a bin (the program it follows does not, and so shifts
 ///           every bin when that score is not 0).
 /// Throws    InvalidInput if a score is not finite.

@@ -3,6 +3,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace corral {
@@ -17,35 +19,33 @@ struct Eigenpair {
   Eigen::VectorXd vector;
 };
 
-/// The largest Ritz pair of the Krylov space of `start`.
+/// The largest Ritz pair of the Krylov space of `start`, grown until the pair satisfies the tolerance or the space is
+/// full.
 Eigenpair largest_ritz_pair(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& start) {
   const Eigen::Index size = matrix.rows();
   const Eigen::Index dimension = std::min<Eigen::Index>(size, kKrylovDimension);
   Eigen::MatrixXd basis(size, dimension);
   Eigen::VectorXd diagonal(dimension), off_diagonal(dimension);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
   basis.col(0) = start.normalized();
-  Eigen::Index used = 0;
-  while (used < dimension) {
-    Eigen::VectorXd next = matrix.selfadjointView<Eigen::Lower>() * basis.col(used);
-    diagonal(used) = basis.col(used).dot(next);
-    const auto span = basis.leftCols(used + 1);
+  for (Eigen::Index used = 1;; ++used) {
+    const auto span = basis.leftCols(used);
+    Eigen::VectorXd next = matrix.selfadjointView<Eigen::Lower>() * basis.col(used - 1);
+    diagonal(used - 1) = basis.col(used - 1).dot(next);
     for (int pass = 0; pass < 2; ++pass) next -= span * (span.transpose() * next);
-    off_diagonal(used) = next.norm();
-    ++used;
-    // The space is exhausted, or already holds the pair: another vector would be rounding noise.
-    if (used == dimension || off_diagonal(used - 1) <= 1e-14 * diagonal.head(used).maxCoeff()) break;
+    off_diagonal(used - 1) = next.norm();
+    small.computeFromTridiagonal(diagonal.head(used), off_diagonal.head(used - 1));
+    const double value = small.eigenvalues()(used - 1);
+    const Eigen::VectorXd weights = small.eigenvectors().col(used - 1);
+    const double residual = off_diagonal(used - 1) * std::abs(weights(used - 1));
+    if (used == dimension || !(residual > 0.1 * kTolerance * value)) return {value, span * weights};
     basis.col(used) = next / off_diagonal(used - 1);
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
-  small.computeFromTridiagonal(diagonal.head(used), off_diagonal.head(used - 1));
-  return {small.eigenvalues()(used - 1), basis.leftCols(used) * small.eigenvectors().col(used - 1)};
 }
 
-Eigenpair perron_pair(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& start) {
+Eigenpair perron_pair(const Eigen::MatrixXd& matrix) {
   const Eigen::Index size = matrix.rows();
-  // Everywhere positive, so that it cannot be orthogonal to the answer.
-  Eigen::VectorXd ones = Eigen::VectorXd::Ones(size) / std::sqrt(static_cast<double>(size));
-  Eigenpair pair{0, start.norm() > 0 ? Eigen::VectorXd(start.normalized() + ones) : ones};
+  Eigenpair pair{0, Eigen::VectorXd::Ones(size)};  // everywhere positive: it cannot be orthogonal to the answer
   double previous_residual = std::numeric_limits<double>::infinity();
   for (int restart = 0; restart < kMaximumRestarts; ++restart) {
     pair = largest_ritz_pair(matrix, pair.vector);
@@ -78,16 +78,16 @@ std::vector<std::vector<Eigen::Index>> connected_parts(const Eigen::MatrixXd& ma
 
 }  // namespace
 
-Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& start) {
+Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix) {
   Eigen::VectorXd answer = Eigen::VectorXd::Zero(matrix.rows());
   double best = 0;
   const auto parts = connected_parts(matrix);
-  if (parts.size() == 1) return perron_pair(matrix, start).vector;
+  if (parts.size() == 1 && matrix.rows() > 1) return perron_pair(matrix).vector;
   for (const auto& part : parts) {
     const Eigen::MatrixXd block = matrix(part, part);
     // An eigenvalue is at most the largest row sum: most parts need no solving.
     if (block.rowwise().sum().maxCoeff() <= best * (1 + 1e-9)) continue;
-    const Eigenpair pair = perron_pair(block, start(part));
+    const Eigenpair pair = perron_pair(block);
     if (pair.value <= best * (1 + 1e-9)) continue;
     best = pair.value;
     answer.setZero();

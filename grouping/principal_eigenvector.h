@@ -12,8 +12,7 @@ namespace corral {
 /// elsewhere. Parts whose eigenvalues agree to 1e-9 relative: the part with the lowest index.
 ///
 /// Each part is solved by restarted Lanczos iteration with full orthogonalisation until |Mx - lambda x| <= 1e-12 lambda,
-/// or until rounding lets it fall no further.
-/// `start` (same size, non-negative) only saves work: an approximate answer.
-Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& start);
+/// or until rounding lets it fall no further. A matrix without a positive entry: zero.
+Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix);
 
 }  // namespace corral

@@ -17,11 +17,11 @@ struct ConfiguredGrouper {
 
 /// One method as the command line, the tests and the README know it.
 struct Grouper {
-  std::string name;       ///< "gc"
-  std::string title;      ///< "Geometric consistency (GC)"
-  std::string principle;  ///< one line
-  std::string citation;   ///< key in paper/references.bib
-  std::vector<OptionValue> options;  ///< the defaults
+  std::string name;                                                    ///< "gc"
+  std::string title;                                                   ///< "Geometric consistency (GC)"
+  std::string principle;                                               ///< one line
+  std::string citation;                                                ///< key in paper/references.bib
+  std::vector<OptionValue> options;                                    ///< the defaults
   std::function<ConfiguredGrouper(const OptionOverrides&)> configure;  ///< throws InvalidInput as parse_options does
 };
 

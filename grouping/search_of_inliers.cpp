@@ -37,13 +37,14 @@ class Voting {
   }
 
   Votes local_votes(int row) const {
-    const Eigen::ArrayXd squared = (matches_.source_points.rowwise() - matches_.source_points.row(row)).rowwise().squaredNorm();
+    const Eigen::ArrayXd squared =
+        (matches_.source_points.rowwise() - matches_.source_points.row(row)).rowwise().squaredNorm();
     const auto nearer = [&](int a, int b) {
       if ((a == row) != (b == row)) return a == row;  // the match itself comes first and is dropped below
       return squared(a) < squared(b);
     };
     Votes votes;
-    for (const int voter : best_rows(matches_.size(), options_.voters + 1, nearer)) {
+    for (const int voter : best_rows(matches_.size(), std::min(options_.voters, matches_.size()) + 1, nearer)) {
       if (voter == row || !trusted_[static_cast<std::size_t>(voter)]) continue;
       ++votes.asked;
       votes.positive += agrees(row, voter);

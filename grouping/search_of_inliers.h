@@ -27,10 +27,12 @@ struct SearchOfInliersOptions {
   static void visit_fields(Self& self, Visitor&& visit) {
     visit(OptionField{"voters", "", "250", "neighbours asked locally, and matches asked globally (kappa)", at_least(1)},
           self.voters);
-    visit(OptionField{"similarity", "", "0.9", "rigidity ratio above which a voter agrees", within(0, 1)}, self.similarity);
+    visit(OptionField{"similarity", "", "0.9", "rigidity ratio above which a voter agrees", within(0, 1)},
+          self.similarity);
     visit(OptionField{"tolerance_pr", "pr", "5", "residual of a global voter under T(c)", above(0)}, self.tolerance_pr);
     visit(OptionField{"otsu", "", "", "how the threshold on the score is found"}, self.otsu);
-    visit(OptionField{"form", "", "rotation", "paper, covis (Buch's program) or rotation (T(c) as printed)"}, self.form);
+    visit(OptionField{"form", "", "rotation", "paper, covis (Buch's program) or rotation (T(c) as printed)"},
+          self.form);
   }
 };
 
@@ -52,7 +54,8 @@ struct SearchOfInliersOptions {
 /// Departs   The paper's T(c) is a rotation alone, which cannot be compared with p'; the full motion is. Ties in distance,
 ///           ratio or local score go to the lower row. No voters at all: s = 0. A match with an invalid frame gets no
 ///           global votes, but its C_G counts. Fewer than 3 matches are returned as they are, without scores. The covis
-///           form uses the pair's resolution (Buch: the target's) and leaves the Otsu rule to its option.
+///           form uses the pair's resolution (Buch: the target's), leaves the Otsu rule to its option, and needs d2 (Buch
+///           falls back to the median of d1).
 GroupingResult group_by_search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options = {});
 
 }  // namespace corral

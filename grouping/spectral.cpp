@@ -32,7 +32,7 @@ Eigen::Index first_maximum(const Eigen::VectorXd& x) {
   return position;
 }
 
-/// Accepts one match after another; `refresh` gives the eigenvector of the matches alive from the one before.
+/// Accepts one match after another; `refresh` gives the entries of the matches alive from those they had before.
 template <class Refresh>
 Indices accept_greedily(const Eigen::MatrixXd& weights, Eigen::VectorXd x, Refresh refresh) {
   Indices alive(static_cast<std::size_t>(weights.rows()));
@@ -62,12 +62,12 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
   if ((weights.array() > 0).count() == weights.rows()) return result;  // nobody agrees with anybody else
   if (!options.weighted) weights = (weights.array() > 0).cast<double>();
 
-  const Eigen::VectorXd full = principal_eigenvector(weights, Eigen::VectorXd::Ones(weights.rows()));
+  const Eigen::VectorXd full = principal_eigenvector(weights);
   if (options.once) {
     result.selected = accept_greedily(weights, full, [](const Indices&, const Eigen::VectorXd& x) { return x; });
   } else {
-    result.selected = accept_greedily(weights, full, [&](const Indices& alive, const Eigen::VectorXd& x) {
-      return principal_eigenvector(weights(alive, alive), x);
+    result.selected = accept_greedily(weights, full, [&](const Indices& alive, const Eigen::VectorXd&) {
+      return principal_eigenvector(weights(alive, alive));
     });
   }
   return result;

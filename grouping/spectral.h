@@ -13,8 +13,9 @@ struct SpectralOptions {
 
   template <class Self, class Visitor>
   static void visit_fields(Self& self, Visitor&& visit) {
-    visit(OptionField{"similarity", "", "0.6", "rigidity ratio from which two matches are compatible", above_up_to(0, 1)},
-          self.similarity);
+    visit(
+        OptionField{"similarity", "", "0.6", "rigidity ratio from which two matches are compatible", above_up_to(0, 1)},
+        self.similarity);
     visit(OptionField{"once", "", "false", "one eigenvector of the whole graph instead of one per accepted match"},
           self.once);
     visit(OptionField{"weighted", "", "", "edges weigh their rigidity ratio instead of 1"}, self.weighted);

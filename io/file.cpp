@@ -95,7 +95,8 @@ void write_file(const std::string& path, const std::string& content) {
 void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error || !fs::is_directory(path)) throw IoError(path, "", "cannot be created as a folder (" + error.message() + ")");
+  if (error || !fs::is_directory(path))
+    throw IoError(path, "", "cannot be created as a folder (" + error.message() + ")");
 }
 
 }  // namespace corral

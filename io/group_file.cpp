@@ -18,7 +18,8 @@ GroupTable read_group(const std::string& path) {
   GroupTable group;
   while (reader.next()) {
     const auto& fields = reader.fields(',');
-    if (fields.size() != 3) reader.fail("found " + std::to_string(fields.size()) + " fields, expected row,selected,score");
+    if (fields.size() != 3)
+      reader.fail("found " + std::to_string(fields.size()) + " fields, expected row,selected,score");
     reader.integer(fields[0], group.matches, group.matches, "the row");
     if (reader.integer(fields[1], 0, 1, "selected") == 1) group.selected.push_back(group.matches);
     if (!fields[2].empty()) group.scores.push_back(reader.finite_number(fields[2]));
@@ -32,8 +33,9 @@ GroupTable read_group(const std::string& path) {
 GroupTable read_group_of(const std::string& path, int matches) {
   GroupTable group = read_group(path);
   if (group.matches != matches)
-    throw IoError(path, "", "has " + std::to_string(group.matches) + " rows, expected " + std::to_string(matches) +
-                                ", one per match");
+    throw IoError(
+        path, "",
+        "has " + std::to_string(group.matches) + " rows, expected " + std::to_string(matches) + ", one per match");
   return group;
 }
 

@@ -10,9 +10,9 @@ namespace corral {
 
 /// What a group file says of a table of matches.
 struct GroupTable {
-  int matches = 0;              ///< rows of the table
-  Indices selected;             ///< ascending
-  std::vector<double> scores;   ///< one per row, or empty
+  int matches = 0;             ///< rows of the table
+  Indices selected;            ///< ascending
+  std::vector<double> scores;  ///< one per row, or empty
 };
 
 /// Reads `row,selected,score`: one line per match in order, selected 0 or 1, score empty on all lines or on none. Throws

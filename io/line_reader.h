@@ -20,9 +20,9 @@ class LineReader {
   /// The same where a line must follow; `expected` says what was to be there.
   void need(const std::string& expected);
 
-  std::string_view line() const { return line_; }         ///< without its end and without white space around
-  std::size_t line_number() const { return number_; }     ///< of line(), from 1
-  std::string_view rest() const { return text_; }         ///< what follows line()
+  std::string_view line() const { return line_; }      ///< without its end and without white space around
+  std::size_t line_number() const { return number_; }  ///< of line(), from 1
+  std::string_view rest() const { return text_; }      ///< what follows line()
 
   /// line() split at white space, or at each occurrence of `separator`.
   const std::vector<std::string_view>& fields();

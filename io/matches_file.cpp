@@ -30,7 +30,8 @@ void read_preamble(LineReader& reader, CorrespondenceSet& matches) {
     const auto fields = reader.fields();
     if (fields.size() == 3 && fields[1] == "resolution") {
       matches.resolution = reader.finite_number(fields[2]);
-      if (!(matches.resolution > 0)) reader.fail("the resolution is " + quoted(fields[2]) + ", expected a length above zero");
+      if (!(matches.resolution > 0))
+        reader.fail("the resolution is " + quoted(fields[2]) + ", expected a length above zero");
       has_resolution = true;
     } else if (fields.size() >= 2 && fields[1] == "source_centroid") {
       if (fields.size() != 5) reader.fail("found " + quoted(reader.line()) + ", expected '# source_centroid x y z'");
@@ -60,10 +61,13 @@ class Columns {
     std::string missing;
     for (const std::string& name : names) {
       const auto found = places_.find(name);
-      if (found != places_.end()) places.push_back(found->second);
-      else if (missing.empty()) missing = name;
+      if (found != places_.end())
+        places.push_back(found->second);
+      else if (missing.empty())
+        missing = name;
     }
-    if (!missing.empty() && (required || !places.empty())) reader_.fail("no column " + quoted(missing) + ", expected one");
+    if (!missing.empty() && (required || !places.empty()))
+      reader_.fail("no column " + quoted(missing) + ", expected one");
     return places;
   }
 
@@ -116,7 +120,8 @@ CorrespondenceSet read_matches(const std::string& path) {
   const Columns columns(reader);
   const auto source = columns.find({"source_x", "source_y", "source_z"}, true);
   const auto target = columns.find({"target_x", "target_y", "target_z"}, true);
-  const auto first = columns.find({"feature_distance"}, false), second = columns.find({"second_feature_distance"}, false);
+  const auto first = columns.find({"feature_distance"}, false),
+             second = columns.find({"second_feature_distance"}, false);
   const auto source_frame = columns.find(numbered("source_frame_", 9), false);
   const auto target_frame = columns.find(numbered("target_frame_", 9), false);
   const auto source_keypoint = columns.find({"source_keypoint"}, false);
@@ -150,14 +155,17 @@ std::string matches_text(const CorrespondenceSet& matches) {
   const bool has_first = matches.feature_distance.size() > 0, has_second = matches.second_feature_distance.size() > 0;
   std::string text = std::string(kFirstLine) + "\n# resolution " + to_text(matches.resolution) + "\n";
   if (const auto& centroid = matches.source_centroid)
-    text += "# source_centroid " + to_text(centroid->x()) + " " + to_text(centroid->y()) + " " + to_text(centroid->z()) + "\n";
+    text += "# source_centroid " + to_text(centroid->x()) + " " + to_text(centroid->y()) + " " +
+            to_text(centroid->z()) + "\n";
   if (!matches.source_keypoints.empty()) text += "source_keypoint,";
   if (!matches.target_keypoints.empty()) text += "target_keypoint,";
   text += "source_x,source_y,source_z,target_x,target_y,target_z";
   if (has_first) text += ",feature_distance";
   if (has_second) text += ",second_feature_distance";
-  if (!matches.source_frames.empty()) for (const std::string& name : numbered("source_frame_", 9)) text += "," + name;
-  if (!matches.target_frames.empty()) for (const std::string& name : numbered("target_frame_", 9)) text += "," + name;
+  if (!matches.source_frames.empty())
+    for (const std::string& name : numbered("source_frame_", 9)) text += "," + name;
+  if (!matches.target_frames.empty())
+    for (const std::string& name : numbered("target_frame_", 9)) text += "," + name;
   text += "\n";
   for (int row = 0; row < matches.size(); ++row) {
     const auto i = static_cast<std::size_t>(row);

@@ -24,7 +24,10 @@ Triangles TriangleBuilder::build() const {
 Mesh read_mesh(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  const auto parser = ending == ".ply" ? parse_ply : ending == ".off" ? parse_off : ending == ".obj" ? parse_obj : nullptr;
+  const auto parser = ending == ".ply"   ? parse_ply
+                      : ending == ".off" ? parse_off
+                      : ending == ".obj" ? parse_obj
+                                         : nullptr;
   const std::string content = read_file(path);
   if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in .ply, .off or .obj");
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
@@ -38,7 +41,8 @@ void write_mesh(const std::string& path, const Mesh& mesh) {
     text += "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
   text += "end_header\n";
   for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
-    text += to_text(mesh.vertices(row, 0)) + " " + to_text(mesh.vertices(row, 1)) + " " + to_text(mesh.vertices(row, 2)) + "\n";
+    text += to_text(mesh.vertices(row, 0)) + " " + to_text(mesh.vertices(row, 1)) + " " +
+            to_text(mesh.vertices(row, 2)) + "\n";
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row)
     text += "3 " + std::to_string(mesh.triangles(row, 0)) + " " + std::to_string(mesh.triangles(row, 1)) + " " +
             std::to_string(mesh.triangles(row, 2)) + "\n";

@@ -10,7 +10,8 @@ namespace {
 
 /// Keywords that say nothing about vertices and faces.
 bool is_ignored(std::string_view keyword) {
-  constexpr std::array<std::string_view, 11> kIgnored = {"vn", "vt", "vp", "g", "o", "s", "usemtl", "mtllib", "l", "p", "mg"};
+  constexpr std::array<std::string_view, 11> kIgnored = {"vn",     "vt",     "vp", "g", "o", "s",
+                                                         "usemtl", "mtllib", "l",  "p", "mg"};
   for (const std::string_view ignored : kIgnored)
     if (keyword == ignored) return true;
   return false;
@@ -34,11 +35,13 @@ Mesh parse_obj(const std::string& path, std::string_view content) {
     const auto& fields = reader.fields();
     const auto vertices = static_cast<std::int64_t>(coordinates.size() / 3);
     if (fields[0] == "v") {
-      if (fields.size() < 4) reader.fail("found " + std::to_string(fields.size() - 1) + " fields, expected three coordinates");
+      if (fields.size() < 4)
+        reader.fail("found " + std::to_string(fields.size() - 1) + " fields, expected three coordinates");
       if (vertices == kMaximumCount) reader.fail("more vertices than can be counted");
       for (std::size_t axis = 1; axis <= 3; ++axis) coordinates.push_back(reader.finite_number(fields[axis]));
     } else if (fields[0] == "f") {
-      if (fields.size() < 4) reader.fail("found " + std::to_string(fields.size() - 1) + " corners, expected at least three");
+      if (fields.size() < 4)
+        reader.fail("found " + std::to_string(fields.size() - 1) + " corners, expected at least three");
       corners.clear();
       for (std::size_t i = 1; i < fields.size(); ++i) corners.push_back(corner_of(reader, fields[i], vertices));
       triangles.add_polygon(corners);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// OFF: a keyword, three counts, one line per vertex, one line per face (its size first; what follows the corners is colour).
+// OFF: a keyword, three counts, one line per vertex, one line per face (its size first; what follows the corners is
+// colour).
 #include "io/line_reader.h"
 #include "io/mesh_file.h"
 
@@ -25,7 +26,8 @@ Counts read_counts(LineReader& reader) {
     fields.erase(fields.begin());
   }
   if (fields.size() < 2 || fields.size() > 3)
-    reader.fail("found " + std::to_string(fields.size()) + " fields, expected the numbers of vertices, faces and edges");
+    reader.fail("found " + std::to_string(fields.size()) +
+                " fields, expected the numbers of vertices, faces and edges");
   // The shortest line of a vertex takes 6 bytes ("0 0 0\n"), of a face 2 ("0\n").
   const auto bytes = static_cast<std::int64_t>(reader.rest().size());
   const Counts counts{reader.integer(fields[0], 0, kMaximumCount, "the number of vertices"),
@@ -46,8 +48,10 @@ Mesh parse_off(const std::string& path, std::string_view content) {
   for (Eigen::Index row = 0; row < counts.vertices; ++row) {
     reader.need("vertex " + std::to_string(row) + " of " + std::to_string(counts.vertices));
     const auto& fields = reader.fields();
-    if (fields.size() < 3) reader.fail("found " + std::to_string(fields.size()) + " fields, expected three coordinates");
-    for (int axis = 0; axis < 3; ++axis) mesh.vertices(row, axis) = reader.finite_number(fields[static_cast<std::size_t>(axis)]);
+    if (fields.size() < 3)
+      reader.fail("found " + std::to_string(fields.size()) + " fields, expected three coordinates");
+    for (int axis = 0; axis < 3; ++axis)
+      mesh.vertices(row, axis) = reader.finite_number(fields[static_cast<std::size_t>(axis)]);
   }
   TriangleBuilder triangles;
   Indices corners;
@@ -62,7 +66,8 @@ Mesh parse_off(const std::string& path, std::string_view content) {
       corners.push_back(static_cast<int>(reader.integer(fields[i], 0, counts.vertices - 1, "a corner")));
     triangles.add_polygon(corners);
   }
-  if (reader.next()) reader.fail("found " + quoted(reader.line()) + " after the last face, expected the end of the file");
+  if (reader.next())
+    reader.fail("found " + quoted(reader.line()) + " after the last face, expected the end of the file");
   mesh.triangles = triangles.build();
   return mesh;
 }

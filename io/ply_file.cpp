@@ -72,7 +72,8 @@ Encoding parse_format(const LineReader& reader, const std::vector<std::string_vi
     if (fields[1] == "binary_little_endian") return Encoding::Little;
     if (fields[1] == "binary_big_endian") return Encoding::Big;
   }
-  reader.fail("found " + quoted(reader.line()) + ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+  reader.fail("found " + quoted(reader.line()) +
+              ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
 }
 
 Header parse_header(LineReader& reader) {
@@ -89,7 +90,8 @@ Header parse_header(LineReader& reader) {
     if (fields[0] == "element" && fields.size() == 3) {
       for (const Element& other : header.elements)
         if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
-      header.elements.push_back({std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
+      header.elements.push_back(
+          {std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
     } else if (fields[0] == "property" && !header.elements.empty()) {
       header.elements.back().properties.push_back(parse_property(reader, fields));
     } else {
@@ -124,7 +126,8 @@ class TextBody {
       fail("found " + std::to_string(fields_->size()) + " values, expected " + std::to_string(next_));
   }
   void finish() {
-    if (reader_.next()) fail("found " + quoted(reader_.line()) + " after the last element, expected the end of the file");
+    if (reader_.next())
+      fail("found " + quoted(reader_.line()) + " after the last element, expected the end of the file");
   }
   [[noreturn]] void fail(const std::string& problem) const { reader_.fail(problem); }
 
@@ -142,7 +145,8 @@ class BinaryBody {
 
   static std::size_t smallest(const Element& element) {
     std::size_t bytes = 0;
-    for (const Property& property : element.properties) bytes += (property.count_type ? property.count_type : property.type)->bytes;
+    for (const Property& property : element.properties)
+      bytes += (property.count_type ? property.count_type : property.type)->bytes;
     return bytes;
   }
   std::size_t bytes_left() const { return left_.size(); }
@@ -162,7 +166,8 @@ class BinaryBody {
   std::size_t values_left() const { return left_.size(); }
   void end() {}
   void finish() {
-    if (!left_.empty()) fail(std::to_string(left_.size()) + " bytes follow the last element, expected the end of the file");
+    if (!left_.empty())
+      fail(std::to_string(left_.size()) + " bytes follow the last element, expected the end of the file");
   }
   [[noreturn]] void fail(const std::string& problem) const {
     throw IoError(path_, "byte " + std::to_string(all_.size() - left_.size()) + " after the header", problem);
@@ -216,7 +221,9 @@ class MeshReader {
     body_.finish();
     for (const int corner : largest_corners_)
       if (corner >= vertices_)
-        throw IoError(path_, "faces", "a corner is vertex " + std::to_string(corner) + ", expected 0 .. " + std::to_string(vertices_ - 1));
+        throw IoError(
+            path_, "faces",
+            "a corner is vertex " + std::to_string(corner) + ", expected 0 .. " + std::to_string(vertices_ - 1));
     mesh_.triangles = triangles_.build();
   }
 
@@ -227,8 +234,9 @@ class MeshReader {
   void check_size(const Element& element) const {
     const std::size_t smallest = Body::smallest(element);
     if (smallest > 0 && static_cast<std::size_t>(element.count) > body_.bytes_left() / smallest + 1)
-      throw IoError(path_, "header", "promises " + std::to_string(element.count) + " of element " + element.name +
-                                         ", but only " + std::to_string(body_.bytes_left()) + " bytes follow");
+      throw IoError(path_, "header",
+                    "promises " + std::to_string(element.count) + " of element " + element.name + ", but only " +
+                        std::to_string(body_.bytes_left()) + " bytes follow");
   }
 
   Layout layout_of(const Element& element) const {
@@ -241,7 +249,8 @@ class MeshReader {
     } else if (element.name == "face") {
       if (layout.corners < 0 || !element.properties[static_cast<std::size_t>(layout.corners)].count_type ||
           element.properties[static_cast<std::size_t>(layout.corners)].type->kind == 'f')
-        throw IoError(path_, "header", "element face lacks its corners, expected a list of whole numbers vertex_indices");
+        throw IoError(path_, "header",
+                      "element face lacks its corners, expected a list of whole numbers vertex_indices");
     }
     return layout;
   }
@@ -268,7 +277,8 @@ class MeshReader {
   void read_list(const Property& property) {
     const double count = body_.value(*property.count_type);
     if (count < 0 || count > static_cast<double>(body_.values_left()))
-      body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) + " values, expected no more than follow");
+      body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
+                 " values, expected no more than follow");
     list_.clear();
     for (double i = 0; i < count; ++i) list_.push_back(body_.value(*property.type));
   }
@@ -302,9 +312,12 @@ Mesh parse_ply(const std::string& path, std::string_view content) {
   LineReader reader(path, content);
   const Header header = parse_header(reader);
   switch (header.encoding) {
-    case Encoding::Ascii: return MeshReader<TextBody>(path, header, reader).take();
-    case Encoding::Big: return MeshReader<BinaryBody<true>>(path, header, reader).take();
-    case Encoding::Little: break;
+    case Encoding::Ascii:
+      return MeshReader<TextBody>(path, header, reader).take();
+    case Encoding::Big:
+      return MeshReader<BinaryBody<true>>(path, header, reader).take();
+    case Encoding::Little:
+      break;
   }
   return MeshReader<BinaryBody<false>>(path, header, reader).take();
 }

@@ -17,13 +17,15 @@ constexpr double kOrthonormal = 1e-4;
 void check_rigid(const std::string& path, const Eigen::Matrix4d& matrix) {
   const Eigen::RowVector4d last = matrix.row(3);
   if (!(last - Eigen::RowVector4d(0, 0, 0, 1)).isZero(0))
-    throw IoError(path, "row 4", "is " + to_text(last(0)) + " " + to_text(last(1)) + " " + to_text(last(2)) + " " +
-                                     to_text(last(3)) + ", expected 0 0 0 1");
+    throw IoError(path, "row 4",
+                  "is " + to_text(last(0)) + " " + to_text(last(1)) + " " + to_text(last(2)) + " " + to_text(last(3)) +
+                      ", expected 0 0 0 1");
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   if (is_rotation(rotation, kOrthonormal)) return;
   const double excess = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  throw IoError(path, "rotation", "not rigid: R R^T differs from the identity by " + to_text(excess) + " and det R is " +
-                                      to_text(rotation.determinant()) + ", expected at most 0.0001 and +1");
+  throw IoError(path, "rotation",
+                "not rigid: R R^T differs from the identity by " + to_text(excess) + " and det R is " +
+                    to_text(rotation.determinant()) + ", expected at most 0.0001 and +1");
 }
 
 }  // namespace

@@ -65,9 +65,15 @@ void require_columns(const CorrespondenceSet& matches, const std::string& who, s
     const char* name = "";
     bool absent = false;
     switch (column) {
-      case Column::SourceFrames: name = "source_frames", absent = matches.source_frames.empty(); break;
-      case Column::TargetFrames: name = "target_frames", absent = matches.target_frames.empty(); break;
-      case Column::FeatureDistance: name = "feature_distance", absent = matches.feature_distance.size() == 0; break;
+      case Column::SourceFrames:
+        name = "source_frames", absent = matches.source_frames.empty();
+        break;
+      case Column::TargetFrames:
+        name = "target_frames", absent = matches.target_frames.empty();
+        break;
+      case Column::FeatureDistance:
+        name = "feature_distance", absent = matches.feature_distance.size() == 0;
+        break;
       case Column::SecondFeatureDistance:
         name = "second_feature_distance", absent = matches.second_feature_distance.size() == 0;
         break;

@@ -13,15 +13,15 @@ namespace corral {
 /// The table of matches between two surfaces: row i of every column belongs to match i. It carries its own ruler, so that
 /// lengths in options can be in pr. A column that is not there is empty; the two point columns always are.
 struct CorrespondenceSet {
-  Points source_points;                     ///< M x 3, mesh units
-  Points target_points;                     ///< M x 3, mesh units
-  LocalReferenceFrames source_frames;       ///< M or empty; rows are axes, a keypoint without a frame has the zero matrix
-  LocalReferenceFrames target_frames;       ///< M or empty
-  Indices source_keypoints;                 ///< M or empty; vertex of the source mesh
-  Indices target_keypoints;                 ///< M or empty; vertex of the target mesh
-  Eigen::VectorXd feature_distance;         ///< M or empty; L2 to the nearest target feature
-  Eigen::VectorXd second_feature_distance;  ///< M or empty; L2 to the second nearest, 0 where there is none
-  double resolution = 1.0;                  ///< mesh units per pr
+  Points source_points;                ///< M x 3, mesh units
+  Points target_points;                ///< M x 3, mesh units
+  LocalReferenceFrames source_frames;  ///< M or empty; rows are axes, a keypoint without a frame has the zero matrix
+  LocalReferenceFrames target_frames;  ///< M or empty
+  Indices source_keypoints;            ///< M or empty; vertex of the source mesh
+  Indices target_keypoints;            ///< M or empty; vertex of the target mesh
+  Eigen::VectorXd feature_distance;    ///< M or empty; L2 to the nearest target feature
+  Eigen::VectorXd second_feature_distance;         ///< M or empty; L2 to the second nearest, 0 where there is none
+  double resolution = 1.0;                         ///< mesh units per pr
   std::optional<Eigen::Vector3d> source_centroid;  ///< mean of all source vertices (3DHV votes for its image)
 
   int size() const { return static_cast<int>(source_points.rows()); }

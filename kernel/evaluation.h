@@ -20,8 +20,8 @@ std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTra
 struct GroupingScore {
   int matches = 0;
   int selected = 0;
-  int correct = 0;       ///< selected and right
-  int true_matches = 0;  ///< right, selected or not
+  int correct = 0;                  ///< selected and right
+  int true_matches = 0;             ///< right, selected or not
   std::optional<double> precision;  ///< correct / selected
   std::optional<double> recall;     ///< correct / true_matches
   std::optional<double> f1;         ///< 2 correct / (selected + true_matches), the harmonic mean of the two

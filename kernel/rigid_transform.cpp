@@ -22,8 +22,7 @@ std::optional<RigidTransform> fit_rigid_transform(const Points& source, const Po
 
   const Eigen::RowVector3d source_mean = source.colwise().mean();
   const Eigen::RowVector3d target_mean = target.colwise().mean();
-  const Eigen::Matrix3d covariance =
-      (source.rowwise() - source_mean).transpose() * (target.rowwise() - target_mean);
+  const Eigen::Matrix3d covariance = (source.rowwise() - source_mean).transpose() * (target.rowwise() - target_mean);
   if (!covariance.allFinite()) return std::nullopt;
 
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);

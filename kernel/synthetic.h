@@ -11,11 +11,11 @@ namespace corral {
 /// A random table of matches whose truth is known.
 struct SyntheticOptions {
   int matches = 500;
-  double inlier_ratio = 0.5;     ///< share of right matches, 0 .. 1; the count is rounded to the nearest
-  double noise_pr = 0.5;         ///< deviation of each target coordinate of a right match
-  double extent_pr = 200;        ///< side of the cube that holds the source points
-  double frame_noise_deg = 3;    ///< angle by which the target frame of a right match is turned about a random axis
-  double resolution = 1.0;       ///< mesh units per pr
+  double inlier_ratio = 0.5;   ///< share of right matches, 0 .. 1; the count is rounded to the nearest
+  double noise_pr = 0.5;       ///< deviation of each target coordinate of a right match
+  double extent_pr = 200;      ///< side of the cube that holds the source points
+  double frame_noise_deg = 3;  ///< angle by which the target frame of a right match is turned about a random axis
+  double resolution = 1.0;     ///< mesh units per pr
   std::uint64_t seed = 1;
 };
 

@@ -25,8 +25,8 @@ struct PointResidual {
   }
 };
 
-/// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an offset of
-/// the coordinates costs no digits.
+/// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an
+/// offset of the coordinates costs no digits.
 struct CentredRows {
   Points source, target;
   Eigen::Vector3d source_mean, target_mean;  // mesh units
@@ -126,10 +126,14 @@ void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOp
 
 const char* to_text(RefineStatus status) {
   switch (status) {
-    case RefineStatus::Refined: return "refined";
-    case RefineStatus::TooFewRows: return "too few rows";
-    case RefineStatus::DegenerateGeometry: return "degenerate geometry";
-    case RefineStatus::Diverged: break;
+    case RefineStatus::Refined:
+      return "refined";
+    case RefineStatus::TooFewRows:
+      return "too few rows";
+    case RefineStatus::DegenerateGeometry:
+      return "degenerate geometry";
+    case RefineStatus::Diverged:
+      break;
   }
   return "diverged";
 }

@@ -31,6 +31,9 @@ void add_run(CLI::App& app, Action& action);
 void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 
+/// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
+Mesh read_surface(const std::string& path);
+
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError

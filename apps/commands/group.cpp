@@ -60,9 +60,11 @@ void add_group(CLI::App& app, Action& action) {
       ->take_all();
   command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)");
   command->add_option("--repeat", settings->repeat, "Timed calls; the median is reported")->capture_default_str();
-  command->add_flag("--json", settings->json, "Counts and time as JSON on standard output (the selection then needs -o)");
-  command->footer("Examples:\n  corral group matches.csv --method gc -o group.csv\n"
-                  "  corral group matches.csv --method ransac --set seed=7 --set iterations=1000 --json --repeat 10");
+  command->add_flag("--json", settings->json,
+                    "Counts and time as JSON on standard output (the selection then needs -o)");
+  command->footer(
+      "Examples:\n  corral group matches.csv --method gc -o group.csv\n"
+      "  corral group matches.csv --method ransac --set seed=7 --set iterations=1000 --json --repeat 10");
   command->callback([settings, &action] { action = [settings] { return group(*settings); }; });
 }
 

@@ -19,8 +19,11 @@ Json to_json(const Grouper& grouper) {
                        {"paper", option.paper.empty() ? Json(nullptr) : Json(option.paper)},
                        {"accepted", option.accepted},
                        {"meaning", option.meaning}});
-  return {{"method", grouper.name}, {"title", grouper.title}, {"principle", grouper.principle},
-          {"citation", grouper.citation}, {"options", options}};
+  return {{"method", grouper.name},
+          {"title", grouper.title},
+          {"principle", grouper.principle},
+          {"citation", grouper.citation},
+          {"options", options}};
 }
 
 std::string to_markdown() {
@@ -40,7 +43,8 @@ std::string to_text() {
     text += grouper.name + "  " + grouper.title + ": " + grouper.principle + " [" + grouper.citation + "]\n";
     for (const OptionValue& option : grouper.options)
       text += "    " + option.name + " = " + option.value + (option.unit.empty() ? "" : " " + option.unit) +
-              (option.paper.empty() ? "" : " (paper: " + option.paper + ")") + "  " + option.meaning + "; " + option.accepted + "\n";
+              (option.paper.empty() ? "" : " (paper: " + option.paper + ")") + "  " + option.meaning + "; " +
+              option.accepted + "\n";
   }
   return text;
 }
@@ -48,8 +52,10 @@ std::string to_text() {
 int list(const Settings& settings) {
   Json json = Json::array();
   for (const Grouper& grouper : groupers()) json.push_back(to_json(grouper));
-  if (settings.json) put("", json);
-  else put("", settings.markdown ? to_markdown() : to_text());
+  if (settings.json)
+    put("", json);
+  else
+    put("", settings.markdown ? to_markdown() : to_text());
   return kOk;
 }
 

@@ -24,7 +24,8 @@ void add_warnings(MeshInfo& info) {
   const auto warn = [&](int count, const std::string& text) {
     if (count > 0) info.warnings.push_back(std::to_string(count) + " " + text);
   };
-  if (info.faces == 0) info.warnings.push_back("no faces: a point cloud, its normals will be turned towards the origin");
+  if (info.faces == 0)
+    info.warnings.push_back("no faces: a point cloud, its normals will be turned towards the origin");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area");
@@ -97,8 +98,10 @@ int info(const Settings& settings) {
       say(std::string("corral: ") + error.what());
     }
   }
-  if (settings.json) put("", list);
-  else put("", text);
+  if (settings.json)
+    put("", list);
+  else
+    put("", text);
   return failed == 0 ? kOk : failed == settings.meshes.size() ? kBadInput : kPartial;
 }
 

@@ -18,14 +18,16 @@ struct Settings {
 
 int match(const Settings& settings) {
   check_usage(settings.match);
-  const Mesh source = read_mesh(settings.source), target = read_mesh(settings.target);
+  const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   MatchedPair pair;
   {
     Progress progress(kMatchStages);
     pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   }
-  if (settings.verbose) say(stage_report(pair.report));
-  else for (const std::string& hint : pair.report.hints) say("hint: " + hint);
+  if (settings.verbose)
+    say(stage_report(pair.report));
+  else
+    for (const std::string& hint : pair.report.hints) say("hint: " + hint);
   if (!settings.json || !settings.output.empty()) put(settings.output, matches_text(pair.matches));
   if (settings.json) put("", to_json(pair.report));
   return kOk;
@@ -33,12 +35,24 @@ int match(const Settings& settings) {
 
 }  // namespace
 
+Mesh read_surface(const std::string& path) {
+  Mesh mesh = read_mesh(path);
+  if (!(bounding_box_diagonal(mesh.vertices) > 0))
+    throw IoError(path, "",
+                  "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +
+                      "at least two places (the resolution would be zero)");
+  return mesh;
+}
+
 void add_match_options(CLI::App& command, MatchSettings& settings) {
-  command.add_option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units")
+  command
+      .add_option("--resolution", settings.resolution,
+                  "pr of the pair: mean, source, target, or a length in mesh units")
       ->capture_default_str();
   command.add_option("--keypoint-radius-pr", settings.keypoint_radius_pr, "Radius of Harris 3D and its suppression")
       ->capture_default_str();
-  command.add_option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame")->capture_default_str();
+  command.add_option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame")
+      ->capture_default_str();
 }
 
 void check_usage(const MatchSettings& settings) {
@@ -60,8 +74,9 @@ void add_match(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "The stage report as JSON on standard output (the table then needs -o)");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report in words on standard error");
   add_match_options(*command, settings->match);
-  command->footer("Examples:\n  corral match model.ply scene.ply -o matches.csv\n"
-                  "  corral match model.ply scene.ply --json -o matches.csv");
+  command->footer(
+      "Examples:\n  corral match model.ply scene.ply -o matches.csv\n"
+      "  corral match model.ply scene.ply --json -o matches.csv");
   command->callback([settings, &action] { action = [settings] { return match(*settings); }; });
 }
 

@@ -20,8 +20,9 @@ struct Settings {
 };
 
 int perturb(const Settings& settings) {
-  if (!(settings.noise_pr >= 0) || !std::isfinite(settings.noise_pr)) throw UsageError("--noise-pr: expected a length of at least 0");
-  const Mesh mesh = read_mesh(settings.mesh);
+  if (!(settings.noise_pr >= 0) || !std::isfinite(settings.noise_pr))
+    throw UsageError("--noise-pr: expected a length of at least 0");
+  const Mesh mesh = read_surface(settings.mesh);
   const RigidTransform motion = random_motion(mesh, derive_seed(settings.seed, "motion"));
   const double deviation = settings.noise_pr > 0 ? settings.noise_pr * point_resolution(mesh.vertices) : 0;
   const Mesh copy = add_gaussian_noise(move_mesh(mesh, motion), deviation, derive_seed(settings.seed, "noise"));
@@ -38,10 +39,12 @@ void add_perturb(CLI::App& app, Action& action) {
   command->add_option("mesh", settings->mesh, "Mesh or point cloud")->required();
   command->add_option("-o,--output", settings->output, "The copy (PLY)")->required();
   command->add_option("--truth", settings->truth, "Where the motion goes: copy_from_mesh, a 4x4 matrix");
-  command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise on every coordinate")->capture_default_str();
+  command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise on every coordinate")
+      ->capture_default_str();
   command->add_option("--seed", settings->seed, "Seed of motion and noise")->capture_default_str();
-  command->footer("Example:\n  corral perturb bunny.off --noise-pr 0.25 -o copy.ply --truth truth.txt\n"
-                  "  corral run bunny.off copy.ply --truth truth.txt --resolution source");
+  command->footer(
+      "Example:\n  corral perturb bunny.off --noise-pr 0.25 -o copy.ply --truth truth.txt\n"
+      "  corral run bunny.off copy.ply --truth truth.txt --resolution source");
   command->callback([settings, &action] { action = [settings] { return perturb(*settings); }; });
 }
 

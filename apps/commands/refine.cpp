@@ -30,8 +30,8 @@ PairTruth truth_of(const CorrespondenceSet& matches, const Settings& settings) {
 std::string in_words(const RefinedPose& pose, const std::optional<PoseErrors>& errors) {
   if (!pose.target_from_source) return std::string("no pose: ") + to_text(pose.status);
   std::string text = std::string(to_text(pose.status)) + (pose.converged ? ", converged after " : ", stopped after ") +
-                     std::to_string(pose.iterations) + " iterations, RMS residual " + fixed(pose.initial_rms_pr, 3) + " -> " +
-                     fixed(pose.final_rms_pr, 3) + " pr";
+                     std::to_string(pose.iterations) + " iterations, RMS residual " + fixed(pose.initial_rms_pr, 3) +
+                     " -> " + fixed(pose.final_rms_pr, 3) + " pr";
   if (errors) {
     text += "; rotation error " + fixed(errors->rotation_error_deg, 4) + " deg, translation error " +
             fixed(errors->translation_error_pr, 4) + " pr";
@@ -52,8 +52,10 @@ int refine(const Settings& settings) {
 
   if (pose.target_from_source && (!settings.json || !settings.output.empty()))
     put(settings.output, transform_text(*pose.target_from_source));
-  if (settings.json) put("", to_json(pose, errors));
-  else say(in_words(pose, errors));
+  if (settings.json)
+    put("", to_json(pose, errors));
+  else
+    say(in_words(pose, errors));
   if (!pose.target_from_source && !settings.output.empty()) say(settings.output + " was not written");
   return kOk;
 }
@@ -66,14 +68,16 @@ void add_refine(CLI::App& app, Action& action) {
   command->add_option("matches", settings->matches, "Table of matches")->required();
   command->add_option("group", settings->group, "Selection made of it")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds the errors of the pose");
-  command->add_option("--threshold-pr", settings->threshold_pr,
-                      "Residual of a right match; RMSE is taken over the source points of the right matches")
+  command
+      ->add_option("--threshold-pr", settings->threshold_pr,
+                   "Residual of a right match; RMSE is taken over the source points of the right matches")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)");
   command->add_flag("--json", settings->json, "Pose, covariance, errors and status as JSON on standard output");
-  command->footer("Without a pose (fewer than 3 rows, or all on one line) nothing is written and the status says why.\n"
-                  "Examples:\n  corral refine matches.csv group.csv -o pose.txt\n"
-                  "  corral refine matches.csv group.csv --truth truth.txt --json");
+  command->footer(
+      "Without a pose (fewer than 3 rows, or all on one line) nothing is written and the status says why.\n"
+      "Examples:\n  corral refine matches.csv group.csv -o pose.txt\n"
+      "  corral refine matches.csv group.csv --truth truth.txt --json");
   command->callback([settings, &action] { action = [settings] { return refine(*settings); }; });
 }
 

@@ -9,7 +9,6 @@
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
-#include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/surface/visibility.h"
 
@@ -31,7 +30,8 @@ std::vector<std::string> method_names(const std::string& text) {
     for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
   std::istringstream stream(text == "all" ? "" : text);
   for (std::string name; std::getline(stream, name, ',');) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) throw UsageError("--methods: " + name + " stands twice");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw UsageError("--methods: " + name + " stands twice");
     names.push_back(name);
   }
   if (names.empty()) throw UsageError("--methods: expected all, or names such as ss,gc");
@@ -85,7 +85,7 @@ PairRun evaluate(const Settings& settings, const std::vector<std::string>& metho
   for (const std::string& name : methods) configured.push_back(configure_grouper(name, {}));
   PairRun run;
   if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
-  const Mesh source = read_mesh(settings.source), target = read_mesh(settings.target);
+  const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   Progress progress(kMatchStages + 1 + static_cast<double>(methods.size()));
   run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   if (run.truth) {
@@ -101,10 +101,12 @@ PairRun evaluate(const Settings& settings, const std::vector<std::string>& metho
 }
 
 std::string heading(const PairRun& run, const Settings& settings) {
-  std::string text = settings.source + " -> " + settings.target + ": " + std::to_string(run.pair.matches.size()) + " matches";
+  std::string text =
+      settings.source + " -> " + settings.target + ": " + std::to_string(run.pair.matches.size()) + " matches";
   if (const auto right = run.true_matches())
     text += ", " + std::to_string(*right) + " right within " + fixed(settings.threshold_pr, 1) + " pr; overlap " +
-            std::to_string(run.truth->overlap.rows()) + " of " + std::to_string(run.pair.report.source.points) + " points";
+            std::to_string(run.truth->overlap.rows()) + " of " + std::to_string(run.pair.report.source.points) +
+            " points";
   return text + "\n";
 }
 
@@ -113,12 +115,17 @@ int run_pair(const Settings& settings) {
   if (!(settings.threshold_pr > 0)) throw UsageError("--threshold-pr: expected a length above zero");
   if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
   const PairRun run = evaluate(settings, method_names(settings.methods));
-  if (settings.verbose) say(stage_report(run.pair.report));
-  else for (const std::string& hint : run.pair.report.hints) say("hint: " + hint);
+  if (settings.verbose)
+    say(stage_report(run.pair.report));
+  else
+    for (const std::string& hint : run.pair.report.hints) say("hint: " + hint);
   if (!settings.output.empty()) write_folder(run, settings);
-  if (settings.json) put("", to_json(run, settings));
-  else put("", heading(run, settings) + methods_text(run.records));
-  const bool failed = std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
+  if (settings.json)
+    put("", to_json(run, settings));
+  else
+    put("", heading(run, settings) + methods_text(run.records));
+  const bool failed =
+      std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
   return failed ? kPartial : kOk;
 }
 
@@ -133,13 +140,16 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--methods", settings->methods, "all, or names between commas: ss,nnsr,ransac,st,gc,hough,si")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file");
-  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")->capture_default_str();
-  command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")->capture_default_str();
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
+      ->capture_default_str();
+  command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")
+      ->capture_default_str();
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);
-  command->footer("Examples:\n  corral run model.ply scene.ply --truth truth.txt\n"
-                  "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
+  command->footer(
+      "Examples:\n  corral run model.ply scene.ply --truth truth.txt\n"
+      "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
   command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });
 }
 

@@ -28,7 +28,8 @@ int score(const Settings& settings) {
   } else {
     TextTable table({"matches", "selected", "correct", "true matches", "precision", "recall", "F1"});
     table.add({std::to_string(scored.matches), std::to_string(scored.selected), std::to_string(scored.correct),
-               std::to_string(scored.true_matches), fixed(scored.precision, 4), fixed(scored.recall, 4), fixed(scored.f1, 4)});
+               std::to_string(scored.true_matches), fixed(scored.precision, 4), fixed(scored.recall, 4),
+               fixed(scored.f1, 4)});
     put("", table.str());
   }
   return kOk;
@@ -42,7 +43,8 @@ void add_score(CLI::App& app, Action& action) {
   command->add_option("matches", settings->matches, "Table of matches")->required();
   command->add_option("group", settings->group, "Selection made of it")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix")->required();
-  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")->capture_default_str();
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
+      ->capture_default_str();
   command->add_flag("--json", settings->json, "As JSON; null where a ratio is undefined");
   command->footer("Example:\n  corral score matches.csv group.csv --truth truth.txt --threshold-pr 4");
   command->callback([settings, &action] { action = [settings] { return score(*settings); }; });

@@ -27,9 +27,9 @@ Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Points& offs
 
 /// A bin and what the value gives to the bin beside it along one axis.
 struct Share {
-  int bin;         ///< where the value lies
-  int beside;      ///< the nearer neighbour along the axis, or -1 at the end of the axis
-  double away;     ///< distance from the centre of `bin` in bins, 0 .. 0.5
+  int bin;      ///< where the value lies
+  int beside;   ///< the nearer neighbour along the axis, or -1 at the end of the axis
+  double away;  ///< distance from the centre of `bin` in bins, 0 .. 0.5
 };
 
 /// `position`: coordinate in which bin b is centred at b. `count` bins, `circular` or ending at both sides.
@@ -38,8 +38,10 @@ Share share_of(double position, int count, bool circular) {
   const double delta = position - nearest;
   const int bin = circular ? (nearest + count) % count : std::clamp(nearest, 0, count - 1);
   int beside = delta > 0 ? bin + 1 : bin - 1;
-  if (circular) beside = (beside + count) % count;
-  else if (beside >= count) beside = -1;
+  if (circular)
+    beside = (beside + count) % count;
+  else if (beside >= count)
+    beside = -1;
   return {bin, beside, std::abs(delta)};
 }
 
@@ -50,7 +52,8 @@ int flat_bin(int azimuth, int elevation, int shell, int cosine) {
 void vote(Eigen::VectorXd& histogram, const Eigen::Vector3d& local, double distance, double cosine, double radius) {
   const double azimuth_deg = std::atan2(local.y(), local.x()) * kDegreesPerRadian;  // -180 .. 180
   const double polar_deg = std::acos(std::clamp(local.z() / distance, -1.0, 1.0)) * kDegreesPerRadian;
-  // Bin b of an axis is centred at position b: cosine bins sit on whole numbers, the others halfway between their edges.
+  // Bin b of an axis is centred at position b: cosine bins sit on whole numbers, the others halfway between their
+  // edges.
   const Share c = share_of((1 + std::clamp(cosine, -1.0, 1.0)) * (kCosines - 1) / 2, kCosines, false);
   const Share a = share_of((azimuth_deg + 180) / 45 - 0.5, kAzimuths, true);
   const Share e = share_of(polar_deg / 90 - 0.5, kElevations, false);
@@ -68,7 +71,8 @@ void vote(Eigen::VectorXd& histogram, const Eigen::Vector3d& local, double dista
 }
 
 void check_length(const char* field, double value) {
-  if (!(value > 0) || !std::isfinite(value)) throw InvalidInput("describe_shot", field, value, "a finite length above zero");
+  if (!(value > 0) || !std::isfinite(value))
+    throw InvalidInput("describe_shot", field, value, "a finite length above zero");
 }
 
 }  // namespace
@@ -94,7 +98,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eige
     weights += weight;
   }
   moments /= weights;
-  if (!moments.allFinite()) return std::nullopt;  // every neighbour exactly at the rim
+  if (!moments.allFinite()) return std::nullopt;                         // every neighbour exactly at the rim
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);  // ascending eigenvalues
   const Eigen::Vector3d x = towards_majority(solver.eigenvectors().col(2), offsets);
   const Eigen::Vector3d z = towards_majority(solver.eigenvectors().col(0), offsets);
@@ -105,9 +109,9 @@ std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eige
   return frame;
 }
 
-std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals, const Eigen::Vector3d& point,
-                                              const LocalReferenceFrame& frame, const std::vector<Neighbor>& neighbors,
-                                              double radius) {
+std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals,
+                                              const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
+                                              const std::vector<Neighbor>& neighbors, double radius) {
   Eigen::VectorXd histogram = Eigen::VectorXd::Zero(kShotSize);
   for (const Neighbor& neighbor : neighbors) {
     const Eigen::Vector3d normal = normals.row(neighbor.index).transpose();

@@ -33,9 +33,9 @@ std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eige
 ///           clockwise, elevation 0 above (z > 0), radius 0 inside R/2.
 /// Source    [tombari2010shot] section 4; additive interpolation and L2 norm as in the library that [yang2017evaluation] ran.
 /// Departs   The neighbour of the last cosine bin is clamped; that library wraps it to bin 0. Its order of bins differs.
-std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals, const Eigen::Vector3d& point,
-                                              const LocalReferenceFrame& frame, const std::vector<Neighbor>& neighbors,
-                                              double radius);
+std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals,
+                                              const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
+                                              const std::vector<Neighbor>& neighbors, double radius);
 
 /// Descriptors of those keypoints that have one.
 struct Descriptors {

@@ -16,8 +16,10 @@ struct TwoNearest {
   double second_squared = std::numeric_limits<double>::infinity();
 
   void offer(Eigen::Index column, double value) {
-    if (value < squared) second_squared = squared, squared = value, first = column;
-    else if (value < second_squared) second_squared = value;
+    if (value < squared)
+      second_squared = squared, squared = value, first = column;
+    else if (value < second_squared)
+      second_squared = value;
   }
 };
 
@@ -25,8 +27,10 @@ struct TwoNearest {
 double second_smallest(const Eigen::VectorXd& values) {
   double first = std::numeric_limits<double>::infinity(), second = first;
   for (const double value : values) {
-    if (value < first) second = first, first = value;
-    else if (value < second) second = value;
+    if (value < first)
+      second = first, first = value;
+    else if (value < second)
+      second = value;
   }
   return values.size() > 1 ? second : first;
 }
@@ -40,14 +44,14 @@ FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::Matrix
   matches.distance.resize(source.cols());
   matches.second_distance.setZero(source.cols());
 
-  const Eigen::VectorXd source_squares = source.colwise().squaredNorm(), target_squares = target.colwise().squaredNorm();
+  const Eigen::VectorXd source_squares = source.colwise().squaredNorm(),
+                        target_squares = target.colwise().squaredNorm();
   for (Eigen::Index begin = 0; begin < source.cols(); begin += kBlock) {
     const Eigen::Index width = std::min(kBlock, source.cols() - begin);
     const Eigen::MatrixXd products = target.transpose() * source.middleCols(begin, width);
     for (Eigen::Index i = 0; i < width; ++i) {
       const Eigen::Index query = begin + i;
-      const Eigen::VectorXd approximate =
-          target_squares.array() + source_squares(query) - 2 * products.col(i).array();
+      const Eigen::VectorXd approximate = target_squares.array() + source_squares(query) - 2 * products.col(i).array();
       // |a|^2 + |b|^2 - 2ab is off by at most a few D ulps of the squares; 1e-11 covers D = 1000 many times over.
       const double slack = 1e-11 * (source_squares(query) + target_squares.maxCoeff());
       const double bound = second_smallest(approximate) + slack;

@@ -9,9 +9,9 @@ namespace corral {
 
 /// The two nearest target features of every source feature.
 struct FeatureMatches {
-  Indices nearest;                          ///< column of the target features, per source feature
-  Eigen::VectorXd distance;                 ///< L2 to it
-  Eigen::VectorXd second_distance;          ///< L2 to the second nearest, 0 where there is only one target feature
+  Indices nearest;                  ///< column of the target features, per source feature
+  Eigen::VectorXd distance;         ///< L2 to it
+  Eigen::VectorXd second_distance;  ///< L2 to the second nearest, 0 where there is only one target feature
 };
 
 /// Exact L2 matching: one row per source feature (columns of D x N and D x M). Ties go to the lower target column.

@@ -65,8 +65,10 @@ Keypoints detect_harris(const Mesh& mesh, const PointIndex& index, double resolu
     ++keypoints.candidates;
     const auto support =
         index.within(mesh.vertices.row(vertex).transpose(), options.support_radius_pr * resolution).size();
-    if (static_cast<int>(support) - 1 < options.minimum_support) ++keypoints.dropped_small_support;
-    else keypoints.vertices.push_back(vertex);
+    if (static_cast<int>(support) - 1 < options.minimum_support)
+      ++keypoints.dropped_small_support;
+    else
+      keypoints.vertices.push_back(vertex);
   }
   return keypoints;
 }

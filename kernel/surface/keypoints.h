@@ -32,7 +32,8 @@ struct Keypoints {
 /// Throws    InvalidInput if a radius is not finite and positive, or `resolution` is not.
 /// Departs   The determinant is taken in double, without the +0.04 - 0.04 that leaves float noise on flat ground; ties go
 ///           to the lower index (there, all of them stay).
-Keypoints detect_harris(const Mesh& mesh, const PointIndex& index, double resolution, const HarrisOptions& options = {});
+Keypoints detect_harris(const Mesh& mesh, const PointIndex& index, double resolution,
+                        const HarrisOptions& options = {});
 
 /// The response of every vertex, V; 0 where a vertex has no normal around it.
 Eigen::VectorXd harris_response(const Points& vertices, const std::vector<std::vector<Neighbor>>& neighborhoods);

@@ -27,7 +27,8 @@ RigidTransform random_motion(const Mesh& mesh, std::uint64_t seed) {
   RigidTransform motion;
   const Eigen::Vector3d centroid = vertex_centroid(mesh);
   motion.rotation = random.rotation();
-  motion.translation = centroid - motion.rotation * centroid + bounding_box_diagonal(mesh.vertices) * random.direction();
+  motion.translation =
+      centroid - motion.rotation * centroid + bounding_box_diagonal(mesh.vertices) * random.direction();
   return motion;
 }
 
