@@ -130,9 +130,16 @@ Json to_json(const MethodRecord& record) {
   return json;
 }
 
+Json typed(const std::string& value) {
+  if (value == "true" || value == "false") return value == "true";
+  if (const auto whole = parse_unsigned(value)) return *whole;
+  if (const auto number = parse_double(value)) return *number;
+  return value;
+}
+
 Json to_json(const std::vector<OptionValue>& options) {
   Json json = Json::object();
-  for (const OptionValue& option : options) json[option.name] = option.value;
+  for (const OptionValue& option : options) json[option.name] = typed(option.value);
   return json;
 }
 

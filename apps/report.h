@@ -23,7 +23,8 @@ Json to_json(const MatchReport& report);
 Json to_json(const GroupingScore& score);
 Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors);
 Json to_json(const MethodRecord& record);
-Json to_json(const std::vector<OptionValue>& options);  ///< name -> value as text
+Json to_json(const std::vector<OptionValue>& options);  ///< name -> value
+Json typed(const std::string& value);                   ///< a bool, a number or else the text itself
 
 /// The stage report in words, for stderr.
 std::string stage_report(const MatchReport& report);

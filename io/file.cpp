@@ -92,6 +92,12 @@ void write_file(const std::string& path, const std::string& content) {
   }
 }
 
+void remove_file(const std::string& path) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error) && !fs::remove(path, error))
+    throw IoError(path, "", "cannot be removed (" + error.message() + ")");
+}
+
 void make_folder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);

@@ -12,6 +12,9 @@ std::string read_file(const std::string& path);
 /// to directly. Throws IoError; what was there before is then still there.
 void write_file(const std::string& path, const std::string& content);
 
+/// Takes away a file that an earlier run left, if it is there. Pipes and devices stay. Throws IoError.
+void remove_file(const std::string& path);
+
 /// Creates a folder and its parents if they are not there. Throws IoError if that is not possible.
 void make_folder(const std::string& path);
 

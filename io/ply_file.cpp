@@ -280,7 +280,7 @@ class MeshReader {
       body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
                  " values, expected no more than follow");
     list_.clear();
-    for (double i = 0; i < count; ++i) list_.push_back(body_.value(*property.type));
+    for (auto i = static_cast<std::int64_t>(count); i > 0; --i) list_.push_back(body_.value(*property.type));
   }
 
   void add_face() {

@@ -37,6 +37,7 @@ Mesh read_surface(const std::string& path);
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
+void check_threshold(double threshold_pr);        ///< throws UsageError
 
 /// The named method with "key=value" texts applied. Throws UsageError.
 ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings);

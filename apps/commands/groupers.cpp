@@ -15,8 +15,8 @@ Json to_json(const Grouper& grouper) {
   for (const OptionValue& option : grouper.options)
     options.push_back({{"name", option.name},
                        {"unit", option.unit},
-                       {"default", option.value},
-                       {"paper", option.paper.empty() ? Json(nullptr) : Json(option.paper)},
+                       {"default", typed(option.value)},
+                       {"paper", option.paper.empty() ? Json(nullptr) : typed(option.paper)},
                        {"accepted", option.accepted},
                        {"meaning", option.meaning}});
   return {{"method", grouper.name},

@@ -2,6 +2,7 @@
 // corral refine: from a selection to a pose.
 #include "apps/commands/commands.h"
 #include "apps/report.h"
+#include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"
@@ -41,7 +42,7 @@ std::string in_words(const RefinedPose& pose, const std::optional<PoseErrors>& e
 }
 
 int refine(const Settings& settings) {
-  if (!(settings.threshold_pr > 0)) throw UsageError("--threshold-pr: expected a length above zero");
+  check_threshold(settings.threshold_pr);
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
   std::optional<PairTruth> truth;
@@ -56,7 +57,7 @@ int refine(const Settings& settings) {
     put("", to_json(pose, errors));
   else
     say(in_words(pose, errors));
-  if (!pose.target_from_source && !settings.output.empty()) say(settings.output + " was not written");
+  if (!pose.target_from_source && !settings.output.empty()) remove_file(settings.output);  // no pose, no file of one
   return kOk;
 }
 
@@ -75,7 +76,7 @@ void add_refine(CLI::App& app, Action& action) {
   command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)");
   command->add_flag("--json", settings->json, "Pose, covariance, errors and status as JSON on standard output");
   command->footer(
-      "Without a pose (fewer than 3 rows, or all on one line) nothing is written and the status says why.\n"
+      "Without a pose (fewer than 3 rows, or all on one line) there is no pose file and the status says why.\n"
       "Examples:\n  corral refine matches.csv group.csv -o pose.txt\n"
       "  corral refine matches.csv group.csv --truth truth.txt --json");
   command->callback([settings, &action] { action = [settings] { return refine(*settings); }; });

@@ -15,6 +15,9 @@
 namespace corral {
 namespace {
 
+/// A source vertex is in the overlap if its true image has a target vertex this near.
+constexpr double kOverlapPr = 4;
+
 struct Settings {
   std::string source, target, truth, methods = "all", output;
   double threshold_pr = 4;
@@ -62,10 +65,16 @@ Json to_json(const PairRun& run, const Settings& settings) {
           {"methods", methods}};
 }
 
-/// Every intermediate file of the run.
+/// Every intermediate file of the run; run.json, the last, says that the others are whole. What an earlier run left of
+/// other methods goes.
 void write_folder(const PairRun& run, const Settings& settings) {
   make_folder(settings.output);
   const std::string folder = settings.output + "/";
+  remove_file(folder + "run.json");
+  for (const Grouper& grouper : groupers())
+    for (const std::string& left :
+         {"group_" + grouper.name + ".csv", "refine_" + grouper.name + ".json", "pose_" + grouper.name + ".txt"})
+      remove_file(folder + left);
   write_file(folder + "matches.csv", matches_text(run.pair.matches));
   put(folder + "match_report.json", corral::to_json(run.pair.report));
   for (const MethodRecord& record : run.records) {
@@ -91,7 +100,7 @@ PairRun evaluate(const Settings& settings, const std::vector<std::string>& metho
   if (run.truth) {
     progress.begin("overlap");
     run.truth->overlap = overlap_points(source.vertices, PointIndex(target.vertices), run.truth->target_from_source,
-                                        settings.threshold_pr * run.pair.report.resolution);
+                                        kOverlapPr * run.pair.report.resolution);
   }
   for (std::size_t i = 0; i < methods.size(); ++i) {
     progress.begin(methods[i]);
@@ -112,7 +121,7 @@ std::string heading(const PairRun& run, const Settings& settings) {
 
 int run_pair(const Settings& settings) {
   check_usage(settings.match);
-  if (!(settings.threshold_pr > 0)) throw UsageError("--threshold-pr: expected a length above zero");
+  check_threshold(settings.threshold_pr);
   if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
   const PairRun run = evaluate(settings, method_names(settings.methods));
   if (settings.verbose)

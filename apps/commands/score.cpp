@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral score: precision and recall of a selection.
+#include <cmath>
+
 #include "apps/commands/commands.h"
 #include "apps/report.h"
 #include "io/group_file.h"
@@ -16,7 +18,7 @@ struct Settings {
 };
 
 int score(const Settings& settings) {
-  if (!(settings.threshold_pr > 0)) throw UsageError("--threshold-pr: expected a length above zero");
+  check_threshold(settings.threshold_pr);
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
   const RigidTransform truth = read_transform(settings.truth);
@@ -36,6 +38,11 @@ int score(const Settings& settings) {
 }
 
 }  // namespace
+
+void check_threshold(double threshold_pr) {
+  if (!(threshold_pr >= 0) || !std::isfinite(threshold_pr))
+    throw UsageError("--threshold-pr: expected a finite length of at least 0");
+}
 
 void add_score(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("score", "Precision, recall and F1 of a selection against a true pose");
