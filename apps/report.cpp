@@ -195,9 +195,10 @@ std::string TextTable::markdown() const {
 
 std::string fixed(std::optional<double> value, int decimals) {
   if (!value) return "";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, *value);
-  return buffer;
+  std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, "%.*f", decimals, *value)) + 1, '\0');
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, *value);
+  text.pop_back();
+  return text;
 }
 
 std::string methods_text(const std::vector<MethodRecord>& records) {
@@ -233,7 +234,9 @@ void put(const std::string& path, const std::string& text) {
     throw IoError("standard output", "", "cannot be written");
 }
 
-void put(const std::string& path, const Json& json) { put(path, json.dump(2) + "\n"); }
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+void put(const std::string& path, const Json& json) { put(path, json_text(json)); }
 
 void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 

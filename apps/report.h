@@ -49,6 +49,9 @@ std::string methods_text(const std::vector<MethodRecord>& records);
 /// The same for scripts: exact numbers, empty where undefined.
 std::string methods_csv(const std::vector<MethodRecord>& records);
 
+/// Indented, on lines of its own; bytes that are no UTF-8 (file names may hold any) are replaced.
+std::string json_text(const Json& json);
+
 /// Writes to the file, or to stdout if no file is named.
 void put(const std::string& path, const std::string& text);
 void put(const std::string& path, const Json& json);

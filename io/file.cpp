@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
 #include "kernel/error.h"
@@ -45,6 +46,62 @@ mode_t default_mode() {
   return 0666 & ~mask;
 }
 
+/// What a chain of links ends at, there or not: a link stays a link, what it names is replaced.
+fs::path end_of_links(fs::path path) {
+  std::error_code error;
+  for (int step = 0; step < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++step)
+    path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
+/// New content beside the file whose place it will take.
+class StagedFile {
+ public:
+  explicit StagedFile(const FileContent& file) : file_(file), place_(end_of_links(file.path)) {
+    const fs::file_status status = fs::status(file.path, error_);
+    if (fs::is_directory(status)) throw IoError(file.path, "", "is a directory, expected a file to write");
+    is_device_ = fs::exists(status) && !fs::is_regular_file(status);
+    if (is_device_) return;
+    temporary_ = place_.string() + ".XXXXXX";
+    const Descriptor descriptor{::mkstemp(temporary_.data())};
+    if (descriptor.value < 0) {
+      temporary_.clear();
+      fail(file.path, "be created");
+    }
+    try {
+      write_all(descriptor.value, file.content, file.path);
+      if (::fchmod(descriptor.value, default_mode()) != 0) fail(file.path, "be given its permissions");
+    } catch (...) {
+      discard();
+      throw;
+    }
+  }
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+  ~StagedFile() { discard(); }
+
+  void commit() {
+    if (is_device_) {
+      const Descriptor descriptor{::open(file_.path.c_str(), O_WRONLY | O_CLOEXEC)};
+      if (descriptor.value < 0) fail(file_.path, "be opened for writing");
+      return write_all(descriptor.value, file_.content, file_.path);
+    }
+    if (::rename(temporary_.c_str(), place_.c_str()) != 0) fail(file_.path, "be replaced");
+    temporary_.clear();
+  }
+
+ private:
+  void discard() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+
+  const FileContent& file_;
+  fs::path place_;
+  std::string temporary_;
+  bool is_device_ = false;
+  std::error_code error_;
+};
+
 }  // namespace
 
 std::string read_file(const std::string& path) {
@@ -67,30 +124,13 @@ std::string read_file(const std::string& path) {
   }
 }
 
-void write_file(const std::string& path, const std::string& content) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::is_directory(status)) throw IoError(path, "", "is a directory, expected a file to write");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const Descriptor file{::open(path.c_str(), O_WRONLY | O_CLOEXEC)};
-    if (file.value < 0) fail(path, "be opened for writing");
-    return write_all(file.value, content, path);
-  }
-  // A link stays a link: what it names is replaced.
-  const fs::path place = fs::is_symlink(fs::symlink_status(path, error)) ? fs::canonical(path, error) : fs::path(path);
-  std::string temporary = (place.empty() ? path : place.string()) + ".XXXXXX";
-  const std::string destination = temporary.substr(0, temporary.size() - 7);
-  const Descriptor file{::mkstemp(temporary.data())};
-  if (file.value < 0) fail(path, "be created");
-  try {
-    write_all(file.value, content, path);
-    if (::fchmod(file.value, default_mode()) != 0) fail(path, "be given its permissions");
-    if (::rename(temporary.c_str(), destination.c_str()) != 0) fail(path, "be replaced");
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
+void write_files(const std::vector<FileContent>& files) {
+  std::vector<std::unique_ptr<StagedFile>> staged;
+  for (const FileContent& file : files) staged.push_back(std::make_unique<StagedFile>(file));
+  for (const auto& file : staged) file->commit();
 }
+
+void write_file(const std::string& path, const std::string& content) { write_files({{path, content}}); }
 
 void remove_file(const std::string& path) {
   std::error_code error;

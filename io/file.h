@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace corral {
 
@@ -11,6 +12,13 @@ std::string read_file(const std::string& path);
 /// Writes a file whole or not at all: into a new file beside it, which then takes its place. Pipes and devices are written
 /// to directly. Throws IoError; what was there before is then still there.
 void write_file(const std::string& path, const std::string& content);
+
+struct FileContent {
+  std::string path, content;
+};
+
+/// The same for several files: none takes its place before all are written.
+void write_files(const std::vector<FileContent>& files);
 
 /// Takes away a file that an earlier run left, if it is there. Pipes and devices stay. Throws IoError.
 void remove_file(const std::string& path);

@@ -10,6 +10,15 @@
 #include "kernel/number_text.h"
 
 namespace corral {
+namespace {
+
+std::string ending_of(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+}  // namespace
 
 void TriangleBuilder::add_polygon(const Indices& corners) {
   for (std::size_t i = 2; i < corners.size(); ++i)
@@ -22,8 +31,7 @@ Triangles TriangleBuilder::build() const {
 }
 
 Mesh read_mesh(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = ending_of(path);
   const auto parser = ending == ".ply"   ? parse_ply
                       : ending == ".off" ? parse_off
                       : ending == ".obj" ? parse_obj
@@ -34,7 +42,7 @@ Mesh read_mesh(const std::string& path) {
   return parser(path, content);
 }
 
-void write_mesh(const std::string& path, const Mesh& mesh) {
+std::string ply_text(const Mesh& mesh) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.rows()) +
                      "\nproperty double x\nproperty double y\nproperty double z\n";
   if (mesh.triangles.rows() > 0)
@@ -46,7 +54,17 @@ void write_mesh(const std::string& path, const Mesh& mesh) {
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row)
     text += "3 " + std::to_string(mesh.triangles(row, 0)) + " " + std::to_string(mesh.triangles(row, 1)) + " " +
             std::to_string(mesh.triangles(row, 2)) + "\n";
-  write_file(path, text);
+  return text;
+}
+
+void check_ply_name(const std::string& path) {
+  if (ending_of(path) != ".ply")
+    throw IoError(path, "", "meshes are written as PLY, expected a name that ends in .ply");
+}
+
+void write_mesh(const std::string& path, const Mesh& mesh) {
+  check_ply_name(path);
+  write_file(path, ply_text(mesh));
 }
 
 }  // namespace corral

@@ -16,8 +16,14 @@ namespace corral {
 ///           less than the header promises, a coordinate that is not finite, a face of a vertex that is not there.
 Mesh read_mesh(const std::string& path);
 
-/// Writes ASCII PLY in double precision; reading it back gives the same mesh. Throws IoError.
+/// The mesh as ASCII PLY in double precision; reading it back gives the same mesh.
+std::string ply_text(const Mesh& mesh);
+
+/// Writes that to a name that ends in .ply. Throws IoError.
 void write_mesh(const std::string& path, const Mesh& mesh);
+
+/// Throws IoError unless the name ends in .ply: what is written there is PLY.
+void check_ply_name(const std::string& path);
 
 // One parser per format, on the whole content of a file; `path` is for messages.
 Mesh parse_ply(const std::string& path, std::string_view content);

@@ -19,7 +19,8 @@ bool is_ignored(std::string_view keyword) {
 
 int corner_of(const LineReader& reader, std::string_view field, std::int64_t vertices) {
   const std::string_view index = field.substr(0, field.find('/'));
-  const std::int64_t low = index.substr(0, 1) == "-" ? -vertices : 1, high = low < 0 ? -1 : vertices;
+  const bool backwards = index.substr(0, 1) == "-";
+  const std::int64_t low = backwards ? -vertices : 1, high = backwards ? -1 : vertices;
   const std::int64_t corner = reader.integer(index, low, high, "a corner");
   return static_cast<int>(corner > 0 ? corner - 1 : vertices + corner);
 }

@@ -32,6 +32,7 @@ Counts read_counts(LineReader& reader) {
   const auto bytes = static_cast<std::int64_t>(reader.rest().size());
   const Counts counts{reader.integer(fields[0], 0, kMaximumCount, "the number of vertices"),
                       reader.integer(fields[1], 0, kMaximumCount, "the number of faces")};
+  if (fields.size() == 3) reader.integer(fields[2], 0, 4 * kMaximumCount, "the number of edges");
   if (6 * counts.vertices + 2 * counts.faces > bytes)
     reader.fail("the header promises " + std::to_string(counts.vertices) + " vertices and " +
                 std::to_string(counts.faces) + " faces, but only " + std::to_string(bytes) + " bytes follow");

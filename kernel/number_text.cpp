@@ -6,6 +6,13 @@
 namespace corral {
 namespace {
 
+/// Whether a decimal number that fits no double is too small for it rather than too large.
+bool is_below_one(std::string_view text) {
+  const std::size_t exponent = text.find_first_of("eE");
+  if (exponent != std::string_view::npos) return text.find('-', exponent) != std::string_view::npos;
+  return text.find_first_of("123456789") > text.find('.');
+}
+
 template <class Number>
 std::optional<Number> parse_whole(std::string_view text) {
   // std::from_chars knows no leading '+', though printf("%+g") writes one.
@@ -15,10 +22,7 @@ std::optional<Number> parse_whole(std::string_view text) {
   const auto [stop, status] = std::from_chars(text.data(), end, value);
   if constexpr (std::is_floating_point_v<Number>) {
     // A magnitude below the smallest denormal is zero to a reader of meshes; one above the largest double is an error.
-    if (status == std::errc::result_out_of_range && stop == end) {
-      const std::size_t exponent = text.find_first_of("eE");
-      if (exponent != std::string_view::npos && text.find('-', exponent) != std::string_view::npos) return 0.0;
-    }
+    if (status == std::errc::result_out_of_range && stop == end && is_below_one(text)) return 0.0;
   }
   if (status != std::errc() || stop != end) return std::nullopt;
   return value;

@@ -42,10 +42,11 @@ Indices choose_rows(RandomStream& random, int rows, int count) {
 SyntheticProblem make_synthetic_problem(const SyntheticOptions& options) {
   check("matches", options.matches, options.matches >= 0, "at least 0");
   check("inlier_ratio", options.inlier_ratio, options.inlier_ratio >= 0 && options.inlier_ratio <= 1, "0 .. 1");
-  check("noise_pr", options.noise_pr, options.noise_pr >= 0, "at least 0");
-  check("extent_pr", options.extent_pr, options.extent_pr > 0, "above 0");
-  check("frame_noise_deg", options.frame_noise_deg, options.frame_noise_deg >= 0, "at least 0");
-  check("resolution", options.resolution, options.resolution > 0, "above 0");
+  check("noise_pr", options.noise_pr, options.noise_pr >= 0 && std::isfinite(options.noise_pr), "at least 0");
+  check("extent_pr", options.extent_pr, options.extent_pr > 0 && std::isfinite(options.extent_pr), "above 0");
+  check("frame_noise_deg", options.frame_noise_deg,
+        options.frame_noise_deg >= 0 && std::isfinite(options.frame_noise_deg), "at least 0");
+  check("resolution", options.resolution, options.resolution > 0 && std::isfinite(options.resolution), "above 0");
 
   RandomStream random(options.seed);
   const double pr = options.resolution;

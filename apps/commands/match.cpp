@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
+#include <cmath>
+
 #include "apps/commands/commands.h"
 #include "apps/progress.h"
 #include "apps/report.h"
@@ -61,8 +63,10 @@ void check_usage(const MatchSettings& settings) {
   } catch (const InvalidInput& error) {
     throw UsageError(error.what());
   }
-  if (!(settings.keypoint_radius_pr > 0) || !(settings.support_radius_pr > 0))
-    throw UsageError("--keypoint-radius-pr and --support-radius-pr: expected lengths above zero");
+  for (const auto& [option, radius] : {std::pair{"--keypoint-radius-pr", settings.keypoint_radius_pr},
+                                       std::pair{"--support-radius-pr", settings.support_radius_pr}})
+    if (!(radius > 0) || !std::isfinite(radius))
+      throw UsageError(std::string(option) + ": expected a finite length above zero");
 }
 
 void add_match(CLI::App& app, Action& action) {

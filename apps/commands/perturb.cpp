@@ -4,6 +4,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/report.h"
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/random.h"
@@ -22,12 +23,14 @@ struct Settings {
 int perturb(const Settings& settings) {
   if (!(settings.noise_pr >= 0) || !std::isfinite(settings.noise_pr))
     throw UsageError("--noise-pr: expected a length of at least 0");
+  check_ply_name(settings.output);
   const Mesh mesh = read_surface(settings.mesh);
   const RigidTransform motion = random_motion(mesh, derive_seed(settings.seed, "motion"));
   const double deviation = settings.noise_pr > 0 ? settings.noise_pr * point_resolution(mesh.vertices) : 0;
   const Mesh copy = add_gaussian_noise(move_mesh(mesh, motion), deviation, derive_seed(settings.seed, "noise"));
-  if (!settings.truth.empty()) put(settings.truth, transform_text(motion));
-  write_mesh(settings.output, copy);
+  std::vector<FileContent> files{{settings.output, ply_text(copy)}};
+  if (!settings.truth.empty()) files.push_back({settings.truth, transform_text(motion)});
+  write_files(files);
   return kOk;
 }
 

@@ -65,28 +65,30 @@ Json to_json(const PairRun& run, const Settings& settings) {
           {"methods", methods}};
 }
 
-/// Every intermediate file of the run; run.json, the last, says that the others are whole. What an earlier run left of
-/// other methods goes.
+/// Every intermediate file of the run, all or none; what an earlier run left of other methods goes.
 void write_folder(const PairRun& run, const Settings& settings) {
   make_folder(settings.output);
   const std::string folder = settings.output + "/";
-  remove_file(folder + "run.json");
-  for (const Grouper& grouper : groupers())
-    for (const std::string& left :
-         {"group_" + grouper.name + ".csv", "refine_" + grouper.name + ".json", "pose_" + grouper.name + ".txt"})
-      remove_file(folder + left);
-  write_file(folder + "matches.csv", matches_text(run.pair.matches));
-  put(folder + "match_report.json", corral::to_json(run.pair.report));
+  std::vector<FileContent> files{{folder + "matches.csv", matches_text(run.pair.matches)},
+                                 {folder + "match_report.json", json_text(corral::to_json(run.pair.report))},
+                                 {folder + "methods.csv", methods_csv(run.records)},
+                                 {folder + "run.json", json_text(to_json(run, settings))}};
   for (const MethodRecord& record : run.records) {
     if (!record.failure.empty()) continue;
-    write_file(folder + "group_" + record.method + ".csv",
-               group_text({run.pair.matches.size(), record.found.selected, record.found.scores}));
-    put(folder + "refine_" + record.method + ".json", corral::to_json(record.pose, record.errors));
+    files.push_back({folder + "group_" + record.method + ".csv",
+                     group_text({run.pair.matches.size(), record.found.selected, record.found.scores})});
+    files.push_back(
+        {folder + "refine_" + record.method + ".json", json_text(corral::to_json(record.pose, record.errors))});
     if (record.pose.target_from_source)
-      write_file(folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source));
+      files.push_back({folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source)});
   }
-  write_file(folder + "methods.csv", methods_csv(run.records));
-  put(folder + "run.json", to_json(run, settings));
+  write_files(files);
+  for (const Grouper& grouper : groupers())
+    for (const std::string& name :
+         {"group_" + grouper.name + ".csv", "refine_" + grouper.name + ".json", "pose_" + grouper.name + ".txt"}) {
+      const auto is_new = [&](const FileContent& file) { return file.path == folder + name; };
+      if (std::none_of(files.begin(), files.end(), is_new)) remove_file(folder + name);
+    }
 }
 
 PairRun evaluate(const Settings& settings, const std::vector<std::string>& methods) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "apps/match_pair.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "kernel/error.h"
+#include "kernel/surface/resolution.h"
+#include "support/meshes.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::refusal_of;
+using ::testing::StartsWith;
+
+Mesh enlarged(Mesh mesh, double factor) {
+  mesh.vertices *= factor;
+  return mesh;
+}
+
+MatchReport report_of(const Mesh& source, const Mesh& target, const MatchSettings& settings) {
+  return match_pair(source, target, settings).report;
+}
+
+TEST(MatchPair, TheRuleGivesTheResolution) {
+  const Mesh source = testing::icosphere(2), target = enlarged(source, 2);
+  const double pr = point_resolution(source.vertices);
+  const std::vector<std::pair<std::string, double>> rules = {
+      {"source", pr}, {"target", 2 * pr}, {"mean", 1.5 * pr}, {"0.125", 0.125}, {"1e-1", 0.1}};
+  for (const auto& [rule, expected] : rules) {
+    const MatchedPair pair = match_pair(source, target, {rule, 3, 15});
+    EXPECT_DOUBLE_EQ(pair.report.resolution, expected) << rule;
+    EXPECT_EQ(pair.matches.resolution, pair.report.resolution) << rule;
+    EXPECT_DOUBLE_EQ(pair.report.keypoint_radius, 3 * expected) << rule;
+    EXPECT_DOUBLE_EQ(pair.report.support_radius, 15 * expected) << rule;
+    EXPECT_DOUBLE_EQ(pair.report.source.resolution, pr) << "its own, whatever the rule";
+    EXPECT_DOUBLE_EQ(pair.report.target.resolution, 2 * pr);
+  }
+  EXPECT_EQ(MatchSettings().resolution, "mean");
+}
+
+TEST(MatchPair, OtherRulesAreRefused) {
+  for (const char* rule : {"", "Mean", "median", "0", "-1", "nan", "inf", "1mm", " 1"}) {
+    const std::string refused = refusal_of([&] { check_resolution_rule(rule); });
+    EXPECT_THAT(refused, AllOf(HasSubstr("'" + std::string(rule) + "'"),
+                               HasSubstr("mean|source|target or a length above zero")));
+    EXPECT_EQ(refusal_of([&] { match_pair(testing::icosphere(1), testing::icosphere(1), {rule, 3, 15}); }), refused);
+  }
+}
+
+TEST(MatchPair, AMeshMatchesItself) {
+  const Mesh mesh = testing::bumpy_sphere(4, 1);
+  const MatchedPair pair = match_pair(mesh, mesh, {});
+  ASSERT_GT(pair.matches.size(), 10);
+  EXPECT_EQ(pair.matches.source_keypoints, pair.matches.target_keypoints);
+  EXPECT_EQ(pair.matches.source_points, pair.matches.target_points);
+  EXPECT_EQ(pair.matches.feature_distance, Eigen::VectorXd::Zero(pair.matches.size()));
+  EXPECT_GT(pair.matches.second_feature_distance.minCoeff(), 0);
+  EXPECT_EQ(pair.matches.source_centroid.value(), vertex_centroid(mesh));
+  EXPECT_NO_THROW(pair.matches.validate());
+}
+
+TEST(MatchPair, TheReportAddsUp) {
+  const MatchedPair pair = match_pair(testing::bumpy_sphere(4, 1), testing::bumpy_sphere(4, 2), {});
+  const MatchReport& report = pair.report;
+  for (const SurfaceReport& side : {report.source, report.target}) {
+    EXPECT_EQ(side.points, 2562);
+    EXPECT_EQ(side.faces, 5120);
+    EXPECT_EQ(side.keypoints,
+              side.candidates - side.dropped_small_support - side.dropped_no_frame - side.dropped_no_histogram);
+    EXPECT_GT(side.descriptors_ms, 0);
+  }
+  EXPECT_EQ(report.matches, report.source.keypoints);
+  EXPECT_EQ(report.matches, pair.matches.size());
+  EXPECT_THAT(report.hints, IsEmpty());
+}
+
+TEST(MatchPair, AnnouncesItsStages) {
+  std::vector<std::string> stages;
+  match_pair(testing::icosphere(2), testing::icosphere(2), {},
+             [&](const std::string& stage) { stages.push_back(stage); });
+  EXPECT_EQ(stages.size(), static_cast<std::size_t>(kMatchStages));
+  EXPECT_EQ(stages.front(), "resolution of the source");
+  EXPECT_EQ(stages.back(), "matching");
+}
+
+TEST(MatchPair, AFlatGridHasNoKeypointAndSaysSo) {
+  const Mesh bumpy = testing::bumpy_sphere(4, 1), flat = testing::grid(20, 20);
+  const MatchedPair pair = match_pair(flat, bumpy, {"target", 3, 15});
+  EXPECT_EQ(pair.matches.size(), 0);
+  ASSERT_EQ(pair.report.hints.size(), 1U);
+  EXPECT_THAT(pair.report.hints[0], StartsWith("no keypoint on the source"));
+  EXPECT_THAT(report_of(flat, flat, {}).hints,
+              ElementsAre(AllOf(HasSubstr("source"), HasSubstr("a flat surface has none")),
+                          HasSubstr("no keypoint on the target")));
+}
+
+TEST(MatchPair, ARadiusTooSmallIsNamedWithABetterOne) {
+  const Mesh bumpy = testing::bumpy_sphere(4, 1);
+  for (const std::string& hint : report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints)
+    EXPECT_THAT(hint,
+                AllOf(HasSubstr("keypoint radius is"), HasSubstr("0.25 of its own pr"), HasSubstr("use about 3 pr")));
+  EXPECT_EQ(report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints.size(), 2U);
+  const MatchReport small_support = report_of(bumpy, bumpy, {"mean", 3, 1});
+  EXPECT_GT(small_support.source.candidates, 0);
+  EXPECT_EQ(small_support.source.dropped_small_support, small_support.source.candidates);
+  EXPECT_THAT(small_support.hints, ElementsAre(AllOf(HasSubstr("no keypoint of the source could be described"),
+                                                     HasSubstr("support radius"), HasSubstr("use about 15 pr")),
+                                               HasSubstr("target")));
+}
+
+TEST(MatchPair, RefusesWhatIsNoSurface) {
+  const Mesh good = testing::icosphere(1);
+  Mesh bad = good;
+  bad.vertices(7, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal_of([&] { match_pair(bad, good, {}); }), AllOf(HasSubstr("source"), HasSubstr("vertex 7")));
+  EXPECT_THAT(refusal_of([&] { match_pair(good, bad, {}); }), AllOf(HasSubstr("target"), HasSubstr("vertex 7")));
+  bad = good;
+  bad.triangles(3, 0) = 42;
+  EXPECT_THAT(refusal_of([&] { match_pair(good, bad, {}); }), AllOf(HasSubstr("target"), HasSubstr("face 3")));
+  EXPECT_NE(refusal_of([&] { match_pair(Mesh(), good, {}); }), "");
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// corral run: everything on one pair, and the single commands on what it leaves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "grouping/registry.h"
+#include "kernel/evaluation.h"
+#include "tests/apps/program.h"
+
+namespace corral {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using testing::keys_of;
+using testing::lines_in;
+using testing::Outcome;
+using ::testing::StartsWith;
+using testing::Workplace;
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
+  return names;
+}
+
+TEST(Run, AllMethodsAlignACopy) {
+  const Workplace place;
+  place.put_pair();
+  const Outcome outcome = place.corral("run model.ply copy.ply --truth truth.txt --json");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  const auto json = outcome.json();
+  EXPECT_THAT(keys_of(json), IsSupersetOf({"source", "target", "resolution", "matches", "true_matches", "methods"}));
+  EXPECT_EQ(json["source"], "model.ply");
+  EXPECT_EQ(json["target"], "copy.ply");
+  EXPECT_GT(json["true_matches"], 10);
+  std::vector<std::string> methods;
+  for (const auto& method : json["methods"]) {
+    methods.push_back(method["method"]);
+    EXPECT_THAT(keys_of(method), ElementsAre("f1", "method", "precision", "recall", "rmse_pr", "rotation_error_deg",
+                                             "selected", "status", "time_ms", "translation_error_pr"));
+    EXPECT_TRUE(method["selected"].is_number_integer());
+    if (method["method"] == "ransac") {
+      EXPECT_LT(method["rotation_error_deg"], 3);
+      EXPECT_EQ(method["status"], "refined");
+    }
+  }
+  EXPECT_EQ(methods, method_names());
+}
+
+TEST(Run, WithoutATruthScoresAndErrorsAreNull) {
+  const Workplace place;
+  place.put_pair();
+  const auto json = place.corral("run model.ply copy.ply --methods gc,ss --json").json();
+  EXPECT_TRUE(json["true_matches"].is_null());
+  ASSERT_EQ(json["methods"].size(), 2U);
+  EXPECT_EQ(json["methods"][0]["method"], "gc") << "in the order asked for";
+  for (const auto& method : json["methods"])
+    for (const char* key : {"precision", "recall", "f1", "rotation_error_deg", "translation_error_pr", "rmse_pr"})
+      EXPECT_TRUE(method[key].is_null()) << key;
+}
+
+TEST(Run, TheTableHasARowPerMethod) {
+  const Workplace place;
+  place.put_pair();
+  const Outcome outcome = place.corral("run model.ply copy.ply --truth truth.txt -v");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("source: 2562 points"), HasSubstr("\ntarget: "), HasSubstr("\npair: pr ")));
+  EXPECT_THAT(outcome.out,
+              AllOf(StartsWith("model.ply -> copy.ply: "), HasSubstr("right within 4.0 pr"), HasSubstr("precision")));
+  EXPECT_EQ(lines_in(outcome.out), 2 + groupers().size());
+  for (const std::string& name : method_names()) EXPECT_THAT(outcome.out, HasSubstr("\n" + name + " "));
+}
+
+TEST(Run, TheFolderAgreesWithTheSingleCommands) {
+  const Workplace place;
+  place.put_pair();
+  ASSERT_EQ(place.corral("run model.ply copy.ply --truth truth.txt -o out/deep").status, 0);
+  ASSERT_EQ(place.corral("match model.ply copy.ply -o matches.csv").status, 0);
+  EXPECT_EQ(place.text("out/deep/matches.csv"), place.text("matches.csv"));
+  const auto run = nlohmann::json::parse(place.text("out/deep/run.json"));
+  EXPECT_EQ(nlohmann::json::parse(place.text("out/deep/match_report.json"))["matches"], run["matches"]);
+  for (const auto& method : run["methods"]) {
+    const std::string name = method["method"], group = "out/deep/group_" + name + ".csv",
+                      pose = "out/deep/pose_" + name + ".txt";
+    SCOPED_TRACE(name);
+    EXPECT_EQ(place.corral("group out/deep/matches.csv -m " + name).out, place.text(group));
+    const Outcome refined =
+        place.corral("refine out/deep/matches.csv " + group + " -o pose.txt --truth truth.txt --json");
+    EXPECT_EQ(place.text("pose.txt"), place.text(pose)) << "both absent if there is no pose";
+    std::filesystem::remove(place / "pose.txt");
+    auto alone = refined.json(), inside = nlohmann::json::parse(place.text("out/deep/refine_" + name + ".json"));
+    for (const char* key : {"rmse_pr", "mean_error_pr"}) {  // over the right matches there, over the overlap here
+      alone.erase(key);
+      inside.erase(key);
+    }
+    EXPECT_EQ(alone, inside);
+    const auto score = place.corral("score out/deep/matches.csv " + group + " --truth truth.txt --json").json();
+    for (const char* key : {"precision", "recall", "f1", "selected"}) EXPECT_EQ(score[key], method[key]) << key;
+    EXPECT_EQ(score["true_matches"], run["true_matches"]);
+  }
+}
+
+TEST(Run, TheSameCommandTwiceGivesTheSameBytes) {
+  const Workplace place;
+  place.put_pair();
+  for (const char* folder : {"one", "two"})
+    ASSERT_EQ(place.corral("run model.ply copy.ply --truth truth.txt -o " + std::string(folder)).status, 0);
+  std::vector<std::string> files = {"matches.csv"};
+  for (const std::string& name : method_names())
+    files.insert(files.end(), {"group_" + name + ".csv", "refine_" + name + ".json"});
+  for (const std::string& file : files) {
+    EXPECT_EQ(place.text("one/" + file), place.text("two/" + file)) << file;
+    EXPECT_NE(place.text("one/" + file), "") << file;
+  }
+  const auto without_times = [&](const std::string& folder) {
+    auto json = nlohmann::json::parse(place.text(folder + "/run.json"));
+    for (auto& method : json["methods"]) method.erase("time_ms");
+    return json;
+  };
+  EXPECT_EQ(without_times("one"), without_times("two"));
+}
+
+TEST(Run, MethodsCsvHoldsTheNumbersOfTheJson) {
+  const Workplace place;
+  place.put_pair();
+  const Outcome outcome = place.corral("run model.ply copy.ply --truth truth.txt --methods ransac,hough -o out --json");
+  ASSERT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out, place.text("out/run.json"));
+  std::istringstream csv(place.text("out/methods.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "method,selected,precision,recall,f1,time_ms,rotation_error_deg,translation_error_pr,rmse_pr,status");
+  const std::vector<std::string> columns = {
+      "selected", "precision", "recall", "f1", "time_ms", "rotation_error_deg", "translation_error_pr", "rmse_pr"};
+  const auto methods = outcome.json()["methods"];
+  for (const auto& method : methods) {
+    std::getline(csv, line);
+    std::istringstream fields(line);
+    std::string field;
+    std::getline(fields, field, ',');
+    EXPECT_EQ(field, method["method"]);
+    for (const std::string& column : columns) {
+      std::getline(fields, field, ',');
+      EXPECT_EQ(field.empty(), method[column].is_null()) << column;
+      if (!field.empty() && method[column].is_number()) {
+        EXPECT_EQ(std::stod(field), method[column].get<double>()) << column;
+      }
+    }
+  }
+}
+
+TEST(Run, AnEmptyTableGivesEmptyGroupsAndNoPose) {
+  const Workplace place;
+  write_mesh(place / "flat.ply", testing::grid(20, 20));
+  place.put("truth.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const Outcome outcome = place.corral("run flat.ply flat.ply --truth truth.txt -o out --json");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("hint: no keypoint on the source"));
+  EXPECT_EQ(outcome.json()["matches"], 0);
+  EXPECT_EQ(outcome.json()["true_matches"], 0);
+  const auto methods = outcome.json()["methods"];
+  for (const auto& method : methods) {
+    EXPECT_EQ(method["selected"], 0);
+    EXPECT_EQ(method["status"], "too few rows");
+    EXPECT_TRUE(method["precision"].is_null() && method["recall"].is_null() && method["rmse_pr"].is_null());
+  }
+  EXPECT_EQ(place.text("out/group_gc.csv"), "row,selected,score\n");
+  EXPECT_FALSE(std::filesystem::exists(place / "out/pose_gc.txt"));
+}
+
+// What an earlier run left must not be taken for an answer of this one.
+TEST(Run, NoPoseOfAnEarlierRunIsLeft) {
+  const Workplace place;
+  place.put_pair();
+  write_mesh(place / "flat.ply", testing::grid(20, 20));
+  ASSERT_EQ(place.corral("run model.ply copy.ply --methods gc -o out").status, 0);
+  ASSERT_TRUE(std::filesystem::exists(place / "out/pose_gc.txt"));
+  ASSERT_EQ(place.corral("run flat.ply flat.ply --methods gc -o out").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(place / "out/pose_gc.txt"));
+}
+
+TEST(Run, TheResolutionRuleReachesTheTable) {
+  const Workplace place;
+  place.put_pair();
+  for (const char* rule : {"source", "target", "mean", "0.0625"}) {
+    const auto report =
+        place.corral("match model.ply copy.ply --json -o matches.csv --resolution " + std::string(rule)).json();
+    const double source = report["source"]["resolution"], target = report["target"]["resolution"];
+    const std::string name(rule);
+    EXPECT_EQ(report["resolution"], name == "source"   ? source
+                                    : name == "target" ? target
+                                    : name == "mean"   ? (source + target) / 2
+                                                       : 0.0625);
+    EXPECT_EQ(read_matches(place / "matches.csv").resolution, report["resolution"]);
+  }
+}
+
+}  // namespace
+}  // namespace corral

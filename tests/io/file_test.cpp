@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "io/file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "tests/io/scratch.h"
+
+namespace corral {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::io_error_of;
+using ::testing::IsEmpty;
+using testing::put_text;
+using testing::ScratchFolder;
+using ::testing::StartsWith;
+using testing::text_of;
+
+mode_t mode_of(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : 0;
+}
+
+/// Sets the file mode mask for a while.
+class Umask {
+ public:
+  explicit Umask(mode_t mask) : before_(::umask(mask)) {}
+  ~Umask() { ::umask(before_); }
+  Umask(const Umask&) = delete;
+  Umask& operator=(const Umask&) = delete;
+
+ private:
+  mode_t before_;
+};
+
+TEST(ReadFile, GivesEveryByte) {
+  const ScratchFolder folder;
+  std::string content;
+  for (int i = 0; i < 200000; ++i) content += static_cast<char>(i % 256);
+  EXPECT_EQ(read_file(put_text(folder / "bytes", content)), content);
+  EXPECT_EQ(read_file(put_text(folder / "none", "")), "");
+}
+
+TEST(ReadFile, NamesWhatIsMissing) {
+  const ScratchFolder folder;
+  const std::string path = folder / "missing.ply";
+  EXPECT_EQ(io_error_of([&] { read_file(path); }), path + ": does not exist");
+  const std::string below_a_file = put_text(folder / "plain", "x") + "/below";
+  EXPECT_EQ(io_error_of([&] { read_file(below_a_file); }), below_a_file + ": does not exist");
+}
+
+TEST(ReadFile, RefusesAFolderAndADevice) {
+  const ScratchFolder folder;
+  EXPECT_EQ(io_error_of([&] { read_file(folder.path()); }), folder.path() + ": is a directory, expected a file");
+  EXPECT_EQ(io_error_of([] { read_file("/dev/zero"); }), "/dev/zero: is a device, expected a file");
+  EXPECT_EQ(io_error_of([] { read_file("/dev/null"); }), "/dev/null: is a device, expected a file");
+}
+
+TEST(ReadFile, ReadsAPipe) {
+  const ScratchFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const std::string content(100000, 'p');
+  std::thread writer([&] { put_text(path, content); });
+  EXPECT_EQ(read_file(path), content);
+  writer.join();
+}
+
+TEST(ReadFile, NamesAFileThatMayNotBeRead) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const ScratchFolder folder;
+  const std::string path = put_text(folder / "secret", "x");
+  fs::permissions(path, fs::perms::none);
+  EXPECT_THAT(io_error_of([&] { read_file(path); }), AllOf(StartsWith(path), HasSubstr("cannot be opened")));
+}
+
+TEST(WriteFile, WritesEveryByteAndLeavesNothingElse) {
+  const ScratchFolder folder;
+  const std::string path = folder / "out", content("a\0b\r\n\xff", 6);
+  write_file(path, content);
+  EXPECT_EQ(text_of(path), content);
+  write_file(path, "");
+  EXPECT_EQ(text_of(path), "");
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+}
+
+TEST(WriteFile, ReplacesAnExistingFileByANewOne) {
+  const ScratchFolder folder;
+  const std::string path = put_text(folder / "out", "old"), other_name = folder / "other_name";
+  fs::create_hard_link(path, other_name);
+  write_file(path, "new");
+  EXPECT_EQ(text_of(path), "new");
+  EXPECT_EQ(text_of(other_name), "old") << "whoever holds the old file keeps it whole";
+}
+
+TEST(WriteFile, NamesAFolderThatDoesNotExist) {
+  const ScratchFolder folder;
+  const std::string path = folder / "nowhere/out.csv";
+  EXPECT_THAT(io_error_of([&] { write_file(path, "x"); }),
+              AllOf(StartsWith(path + ": "), HasSubstr("cannot be created"), HasSubstr("No such file")));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(WriteFile, RefusesAFolder) {
+  const ScratchFolder folder;
+  const std::string path = folder / "taken";
+  fs::create_directory(path);
+  EXPECT_EQ(io_error_of([&] { write_file(path, "x"); }), path + ": is a directory, expected a file to write");
+  EXPECT_THAT(folder.names(), ElementsAre("taken"));
+}
+
+// /dev/full takes no byte. The write fails as on a full disk.
+TEST(WriteFile, SaysThatTheDiskIsFull) {
+  EXPECT_EQ(io_error_of([] { write_file("/dev/full", "x"); }),
+            "/dev/full: cannot be written (No space left on device)");
+}
+
+TEST(WriteFile, WhatWasThereStaysIfWritingFails) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const ScratchFolder folder;
+  const std::string path = put_text(folder / "out", "old");
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(io_error_of([&] { write_file(path, "new"); }), StartsWith(path));
+  fs::permissions(folder.path(), fs::perms::owner_all);
+  EXPECT_EQ(text_of(path), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+}
+
+TEST(WriteFile, ALinkStaysALink) {
+  const ScratchFolder folder;
+  fs::create_directory(folder / "elsewhere");
+  const std::string place = put_text(folder / "elsewhere/file", "old"), link = folder / "link";
+  fs::create_symlink("elsewhere/file", link);
+  write_file(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_FALSE(fs::is_symlink(place));
+  EXPECT_EQ(text_of(place), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("elsewhere", "link"));
+}
+
+TEST(WriteFile, ALinkToAFileThatIsNotThereYetStaysALink) {
+  const ScratchFolder folder;
+  const std::string link = folder / "link";
+  fs::create_symlink("later", link);
+  write_file(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(text_of(folder / "later"), "new");
+}
+
+TEST(WriteFile, PermissionsFollowTheUmask) {
+  const ScratchFolder folder;
+  for (const mode_t mask : {022U, 077U, 0U}) {
+    const Umask masked(mask);
+    const std::string path = folder / ("mask" + std::to_string(mask));
+    write_file(path, "x");
+    EXPECT_EQ(mode_of(path), 0666U & ~mask);
+    EXPECT_EQ(::umask(mask), mask) << "the mask itself is left as it was";
+  }
+}
+
+TEST(WriteFile, WritesToADeviceAndAPipe) {
+  write_file("/dev/null", "gone");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  const ScratchFolder folder;
+  const std::string path = folder / "pipe", content(100000, 'p');
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::string seen;
+  std::thread reader([&] { seen = text_of(path); });
+  write_file(path, content);
+  reader.join();
+  EXPECT_EQ(seen, content);
+  EXPECT_TRUE(fs::is_fifo(path));
+}
+
+TEST(RemoveFile, TakesAwayAFileAndNothingElse) {
+  const ScratchFolder folder;
+  const std::string path = put_text(folder / "out", "x"), kept = folder / "kept";
+  fs::create_directory(kept);
+  for (int twice = 0; twice < 2; ++twice) remove_file(path);
+  remove_file(kept);
+  remove_file("/dev/null");
+  EXPECT_THAT(folder.names(), ElementsAre("kept"));
+  EXPECT_TRUE(fs::exists("/dev/null"));
+}
+
+TEST(MakeFolder, MakesParentsAndAcceptsWhatIsThere) {
+  const ScratchFolder folder;
+  for (int twice = 0; twice < 2; ++twice) make_folder(folder / "a/b/c");
+  EXPECT_TRUE(fs::is_directory(folder / "a/b/c"));
+}
+
+TEST(MakeFolder, NamesAFileInTheWay) {
+  const ScratchFolder folder;
+  const std::string taken = put_text(folder / "taken", "x");
+  EXPECT_THAT(io_error_of([&] { make_folder(taken); }),
+              AllOf(StartsWith(taken + ": cannot be created as a folder"), ::testing::Not(HasSubstr("Success"))));
+  EXPECT_THAT(io_error_of([&] { make_folder(taken + "/below"); }),
+              AllOf(StartsWith(taken), HasSubstr("Not a directory")));
+  EXPECT_EQ(text_of(taken), "x");
+}
+
+}  // namespace
+}  // namespace corral

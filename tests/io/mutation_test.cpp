@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Damaged files of every format: a reader either refuses them or gives something valid, and never does anything else.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "io/group_file.h"
+#include "io/matches_file.h"
+#include "io/mesh_file.h"
+#include "io/transform_file.h"
+#include "kernel/random.h"
+#include "kernel/synthetic.h"
+#include "tests/io/ply_encoder.h"
+#include "tests/io/scratch.h"
+
+namespace corral {
+namespace {
+
+using testing::put_text;
+using testing::ScratchFolder;
+
+constexpr int kRounds = 2000;
+
+enum class Damage { Flip, Insert, Delete };
+
+/// One to three bytes damaged; half of what is put in comes from the alphabet of the text formats.
+std::string damaged(std::string content, Damage damage, RandomStream& random) {
+  const std::string alphabet = "0123456789-+.eE ,\n#nanif";
+  for (std::uint64_t left = 1 + random.below(3); left > 0 && !content.empty(); --left) {
+    const std::size_t at = random.below(content.size());
+    const char byte =
+        random.below(2) == 0 ? alphabet[random.below(alphabet.size())] : static_cast<char>(random.below(256));
+    if (damage == Damage::Flip) content[at] = byte;
+    if (damage == Damage::Insert) content.insert(at, 1, byte);
+    if (damage == Damage::Delete) content.erase(at, 1);
+  }
+  return content;
+}
+
+/// `read` must return or throw one of the two errors that a user understands. Returns how often it accepted.
+int survive(const std::string& content, std::uint64_t seed, const std::function<void(const std::string&)>& read) {
+  RandomStream random(seed);
+  int accepted = 0;
+  for (const Damage damage : {Damage::Flip, Damage::Insert, Damage::Delete}) {
+    for (int round = 0; round < kRounds; ++round) {
+      const std::string bad = damaged(content, damage, random);
+      try {
+        read(bad);
+        ++accepted;
+      } catch (const IoError&) {
+      } catch (const InvalidInput&) {
+      } catch (const std::exception& error) {
+        ADD_FAILURE() << "damage " << static_cast<int>(damage) << ", round " << round << ": " << error.what();
+        return accepted;
+      }
+    }
+  }
+  EXPECT_GT(accepted, 0) << "the damage is too coarse: nothing behind the first check is reached";
+  EXPECT_LT(accepted, 3 * kRounds) << "no damage is ever seen";
+  return accepted;
+}
+
+void survive_as_mesh(const std::string& content, std::uint64_t seed,
+                     Mesh (*parse)(const std::string&, std::string_view)) {
+  ASSERT_NO_THROW(parse("mesh", content).validate("undamaged"));
+  survive(content, seed, [parse](const std::string& bad) {
+    const Mesh mesh = parse("mesh", bad);
+    EXPECT_NO_THROW(mesh.validate("damaged")) << bad;
+  });
+}
+
+TEST(Mutation, Off) {
+  survive_as_mesh("OFF\n4 2 5\n0 0 0.5\n1 0 .5\n1 1e0 0.5\n0 1 0.5\n3 0 1 2\n4 0 1 2 3\n", 1, parse_off);
+}
+
+TEST(Mutation, Obj) {
+  survive_as_mesh("# by hand\nv 0 0 0.5\nv 1 0 0.5\nv 1 1 0.5\nv 0 1 0.5\nvn 0 0 1\nf 1/1 2//1 3/1/1\nf -4 -2 -1\n", 2,
+                  parse_obj);
+}
+
+TEST(Mutation, PlyAscii) { survive_as_mesh(testing::intricate_ply("ascii"), 3, parse_ply); }
+TEST(Mutation, PlyLittleEndian) { survive_as_mesh(testing::intricate_ply("binary_little_endian"), 4, parse_ply); }
+TEST(Mutation, PlyBigEndian) { survive_as_mesh(testing::intricate_ply("binary_big_endian"), 5, parse_ply); }
+
+TEST(Mutation, Matches) {
+  SyntheticOptions options;
+  options.matches = 3;
+  const ScratchFolder folder;
+  const std::string path = folder / "matches.csv";
+  survive(matches_text(make_synthetic_problem(options).matches), 6, [&](const std::string& bad) {
+    const CorrespondenceSet matches = read_matches(put_text(path, bad));
+    EXPECT_NO_THROW(matches.validate()) << bad;
+  });
+}
+
+TEST(Mutation, Group) {
+  const ScratchFolder folder;
+  const std::string path = folder / "group.csv";
+  survive(group_text({6, {0, 3, 5}, {0.5, 1, -2, 3e-5, 0, 7}}), 7, [&](const std::string& bad) {
+    const GroupTable group = read_group(put_text(path, bad));
+    EXPECT_TRUE(group.scores.empty() || group.scores.size() == static_cast<std::size_t>(group.matches)) << bad;
+    for (const int row : group.selected) EXPECT_TRUE(row >= 0 && row < group.matches) << bad;
+  });
+}
+
+TEST(Mutation, Transform) {
+  RandomStream random(8);
+  const RigidTransform motion{random.rotation(), random.direction()};
+  const ScratchFolder folder;
+  const std::string path = folder / "pose.txt";
+  survive(transform_text(motion), 9, [&](const std::string& bad) {
+    const RigidTransform read = read_transform(put_text(path, bad));
+    EXPECT_TRUE(is_rotation(read.rotation, 1e-4)) << bad;
+    EXPECT_TRUE(read.translation.allFinite()) << bad;
+  });
+}
+
+}  // namespace
+}  // namespace corral

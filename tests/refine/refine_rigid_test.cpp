@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+#include "refine/refine_rigid.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "kernel/error.h"
+#include "kernel/random.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+Indices all_rows(const CorrespondenceSet& matches) {
+  Indices rows(static_cast<std::size_t>(matches.size()));
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
+SyntheticProblem problem(int matches, double inlier_ratio, double noise_pr, std::uint64_t seed, double resolution = 1) {
+  SyntheticOptions options;
+  options.matches = matches;
+  options.inlier_ratio = inlier_ratio;
+  options.noise_pr = noise_pr;
+  options.seed = seed;
+  options.resolution = resolution;
+  return make_synthetic_problem(options);
+}
+
+RefinedPose refine(const CorrespondenceSet& matches, const RefineOptions& options = {}) {
+  return refine_rigid(matches, all_rows(matches), options);
+}
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
+/// |A - B| over sqrt 2: the angle between two rotations that are close.
+double small_angle(const RigidTransform& a, const RigidTransform& b) {
+  return (a.rotation - b.rotation).norm() / std::sqrt(2.0);
+}
+
+Eigen::Vector3d residual(const CorrespondenceSet& matches, const RigidTransform& pose, int row) {
+  return pose * Eigen::Vector3d(matches.source_points.row(row).transpose()) -
+         matches.target_points.row(row).transpose();
+}
+
+double robust_cost(const CorrespondenceSet& matches, const Indices& rows, const RigidTransform& pose, double scale_pr) {
+  double cost = 0;
+  for (const int row : rows) {
+    const double squared = residual(matches, pose, row).squaredNorm() / (matches.resolution * matches.resolution);
+    cost += scale_pr * scale_pr * std::log1p(squared / (scale_pr * scale_pr));
+  }
+  return cost;
+}
+
+double rms_pr(const CorrespondenceSet& matches, const Indices& rows, const RigidTransform& pose) {
+  double sum = 0;
+  for (const int row : rows) sum += residual(matches, pose, row).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(rows.size())) / matches.resolution;
+}
+
+/// The pose change that leads from the estimate to the truth: R_truth = exp([w]) R_estimate, and the rest of t.
+Eigen::Matrix<double, 6, 1> pose_error(const RigidTransform& truth, const RigidTransform& estimate) {
+  Eigen::Matrix<double, 6, 1> error;
+  error << rotation_vector(truth.rotation * estimate.rotation.transpose()), truth.translation - estimate.translation;
+  return error;
+}
+
+/// s^2 (sum w J^T J)^-1 as the header says it.
+PoseCovariance covariance_by_formula(const CorrespondenceSet& matches, const RigidTransform& pose, double scale_pr) {
+  PoseCovariance information = PoseCovariance::Zero();
+  double weighted_squares = 0;
+  for (int row = 0; row < matches.size(); ++row) {
+    const Eigen::Vector3d error = residual(matches, pose, row);
+    const double weight = 1 / (1 + error.squaredNorm() / std::pow(scale_pr * matches.resolution, 2));
+    const Eigen::Vector3d arm = pose.rotation * matches.source_points.row(row).transpose();
+    Eigen::Matrix<double, 3, 6> jacobian;
+    jacobian << 0, arm.z(), -arm.y(), 1, 0, 0, -arm.z(), 0, arm.x(), 0, 1, 0, arm.y(), -arm.x(), 0, 0, 0, 1;
+    information += weight * jacobian.transpose() * jacobian;
+    weighted_squares += weight * error.squaredNorm();
+  }
+  return weighted_squares / (3 * matches.size() - 6) * information.inverse();
+}
+
+/// No pose for that reason, and nothing that would need one.
+void expect_no_pose(const RefinedPose& found, RefineStatus status) {
+  EXPECT_EQ(found.status, status) << to_text(found.status);
+  EXPECT_FALSE(found.target_from_source.has_value());
+  EXPECT_FALSE(found.covariance.has_value());
+  EXPECT_FALSE(found.converged);
+}
+
+TEST(RefineRigid, TruthIsRecoveredWithoutNoise) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SyntheticProblem given = problem(seed % 2 == 0 ? 3 : 50, 1, 0, seed);
+    const RefinedPose found = refine(given.matches);
+    ASSERT_EQ(found.status, RefineStatus::Refined);
+    EXPECT_TRUE(found.converged);
+    EXPECT_LT(small_angle(*found.target_from_source, given.truth), 1e-9);
+    EXPECT_LT((found.target_from_source->translation - given.truth.translation).norm(), 1e-9 * 200);
+    EXPECT_TRUE(is_rotation(found.target_from_source->rotation, 1e-12));
+    ASSERT_TRUE(found.covariance.has_value());
+    EXPECT_TRUE(found.covariance->allFinite());
+    EXPECT_LT(found.final_rms_pr, 1e-9);
+  }
+}
+
+TEST(RefineRigid, TruthIsRecoveredAmongGrossErrors) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SyntheticProblem given = problem(200, 0.7, 0.5, seed);
+    const RefinedPose found = refine(given.matches);
+    ASSERT_EQ(found.status, RefineStatus::Refined);
+    // 140 right matches over a cube of 200 pr: deviations of about 5e-4 rad, and 0.04 pr at the middle.
+    EXPECT_LT(small_angle(*found.target_from_source, given.truth), 0.003) << seed;
+    const Eigen::Vector3d middle = given.matches.source_points.colwise().mean().transpose();
+    EXPECT_LT((*found.target_from_source * middle - given.truth * middle).norm(), 0.3) << seed;
+    EXPECT_GT(small_angle(*found.initial, given.truth), small_angle(*found.target_from_source, given.truth));
+  }
+}
+
+TEST(RefineRigid, CostNeverRises) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed)
+    for (const double scale_pr : {0.5, 5.0, 500.0}) {
+      const CorrespondenceSet matches = problem(40, 0.1 * static_cast<double>(seed % 11), 1, seed, 0.01).matches;
+      RefineOptions options;
+      options.loss_scale_pr = scale_pr;
+      options.maximum_iterations = seed % 3 == 0 ? 2 : 100;
+      const RefinedPose found = refine(matches, options);
+      ASSERT_EQ(found.status, RefineStatus::Refined);
+      ASSERT_TRUE(found.initial.has_value());
+      const double before = robust_cost(matches, all_rows(matches), *found.initial, scale_pr);
+      EXPECT_LE(robust_cost(matches, all_rows(matches), *found.target_from_source, scale_pr), before * (1 + 1e-12));
+      EXPECT_LE(found.iterations, options.maximum_iterations);
+      EXPECT_NEAR(found.initial_rms_pr, rms_pr(matches, all_rows(matches), *found.initial), 1e-9);
+      EXPECT_NEAR(found.final_rms_pr, rms_pr(matches, all_rows(matches), *found.target_from_source), 1e-9);
+    }
+}
+
+TEST(RefineRigid, EndsInAMinimum) {
+  const SyntheticProblem given = problem(80, 0.8, 0.5, 3);
+  const Indices rows = all_rows(given.matches);
+  const RefinedPose found = refine(given.matches);
+  ASSERT_TRUE(found.converged);
+  const double lowest = robust_cost(given.matches, rows, *found.target_from_source, 5);
+  RandomStream random(4);
+  for (int trial = 0; trial < 100; ++trial) {
+    RigidTransform aside = *found.target_from_source;
+    aside.rotation = Eigen::AngleAxisd(1e-3, random.direction()).toRotationMatrix() * aside.rotation;
+    aside.translation += 0.1 * random.direction();
+    EXPECT_GT(robust_cost(given.matches, rows, aside, 5), lowest);
+  }
+}
+
+TEST(RefineRigid, StartsFromTheLeastSquaresFitOfTheRows) {
+  const SyntheticProblem given = problem(60, 0.5, 0.5, 5);
+  const RefinedPose found = refine_rigid(given.matches, given.inliers);
+  const auto initial = fit_rigid_transform(given.matches, given.inliers);
+  EXPECT_LT(small_angle(*found.initial, *initial), 1e-12);
+  EXPECT_LT((found.initial->translation - initial->translation).norm(), 1e-10);
+  EXPECT_LT(small_angle(*found.target_from_source, given.truth), 0.005);
+  // A wide loss is least squares.
+  RefineOptions wide;
+  wide.loss_scale_pr = 1e6;
+  EXPECT_LT(small_angle(*refine_rigid(given.matches, given.inliers, wide).target_from_source, *initial), 1e-7);
+}
+
+TEST(RefineRigid, CovarianceFollowsItsFormula) {
+  for (const double resolution : {1.0, 0.01})
+    for (const double ratio : {1.0, 0.8}) {
+      const CorrespondenceSet matches = problem(60, ratio, 0.5, 6, resolution).matches;
+      const RefinedPose found = refine(matches);
+      const PoseCovariance expected = covariance_by_formula(matches, *found.target_from_source, 5);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) {
+          const double unit = std::sqrt(expected(i, i) * expected(j, j));
+          EXPECT_NEAR((*found.covariance)(i, j), expected(i, j), 1e-7 * unit);
+          EXPECT_NEAR((*found.covariance)(i, j), (*found.covariance)(j, i), 1e-12 * unit);
+        }
+    }
+}
+
+/// Mean over 2000 trials of e^T C^-1 e with 60 matches, all right, around `middle`.
+double mean_normalised_error(const Eigen::Vector3d& middle, double loss_scale_pr) {
+  RefineOptions options;
+  options.loss_scale_pr = loss_scale_pr;
+  RandomStream random(7);
+  double sum = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const RigidTransform truth{random.rotation(), 50 * random.direction()};
+    CorrespondenceSet matches;
+    matches.source_points.resize(60, 3);
+    for (int row = 0; row < 60; ++row)
+      for (int axis = 0; axis < 3; ++axis) matches.source_points(row, axis) = middle(axis) + random.uniform(-50, 50);
+    matches.target_points = truth.apply(matches.source_points);
+    for (int row = 0; row < 60; ++row)
+      for (int axis = 0; axis < 3; ++axis) matches.target_points(row, axis) += 0.5 * random.normal();
+    const RefinedPose found = refine(matches, options);
+    if (!found.covariance) return NAN;
+    const Eigen::Matrix<double, 6, 1> error = pose_error(truth, *found.target_from_source);
+    sum += error.dot(Eigen::Matrix<double, 6, 1>(found.covariance->fullPivLu().solve(error)));
+  }
+  return sum / 2000;
+}
+
+TEST(RefineRigid, CovarianceTellsTheSpreadOfThePose) {
+  // With n = 3 * 60 - 6 degrees of freedom in s^2 the normalised error is 6 F(6, n): mean 6 n / (n - 2) = 6.07,
+  // deviation 3.59, so the mean of 2000 trials has a standard error of 0.080. Four of them are allowed.
+  EXPECT_NEAR(mean_normalised_error(Eigen::Vector3d::Zero(), 100), 6.07, 0.32);
+  EXPECT_NEAR(mean_normalised_error({1000, -1000, 1000}, 100), 6.07, 0.32);
+  // The usual loss makes s^2 smaller by about two noise variances over a^2, here 2 %.
+  EXPECT_NEAR(mean_normalised_error({1000, -1000, 1000}, 5), 6.07 * 1.02, 0.32);
+}
+
+TEST(RefineRigid, TwiceTheSameBytes) {
+  const CorrespondenceSet matches = problem(150, 0.6, 0.5, 8).matches;
+  const RefinedPose first = refine(matches), second = refine(matches);
+  const auto same = [](const auto& a, const auto& b) {
+    return std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;
+  };
+  EXPECT_TRUE(same(first.target_from_source->rotation, second.target_from_source->rotation));
+  EXPECT_TRUE(same(first.target_from_source->translation, second.target_from_source->translation));
+  EXPECT_TRUE(same(*first.covariance, *second.covariance));
+  EXPECT_EQ(first.iterations, second.iterations);
+}
+
+TEST(RefineRigid, UnitOfLengthDoesNotMatter) {
+  for (const double factor : {1024.0, 1.0 / 1024}) {
+    const CorrespondenceSet matches = problem(150, 0.7, 0.5, 9).matches;
+    const RefinedPose found = refine(matches), resized = refine(testing::scaled(matches, factor));
+    ASSERT_EQ(resized.status, RefineStatus::Refined);
+    EXPECT_LT(small_angle(*found.target_from_source, *resized.target_from_source), 1e-9);
+    EXPECT_LT((resized.target_from_source->translation / factor - found.target_from_source->translation).norm(), 1e-6);
+    EXPECT_NEAR(resized.final_rms_pr, found.final_rms_pr, 1e-6);
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        const double unit = (i < 3 ? 1 : factor) * (j < 3 ? 1 : factor);
+        EXPECT_NEAR((*resized.covariance)(i, j) / unit, (*found.covariance)(i, j),
+                    1e-6 * std::sqrt((*found.covariance)(i, i) * (*found.covariance)(j, j)));
+      }
+  }
+}
+
+TEST(RefineRigid, FarFromTheOrigin) {
+  SyntheticProblem given = problem(100, 0.8, 0.5, 10);
+  const RefinedPose near = refine(given.matches);
+  for (const double offset : {1e4, 1e6}) {
+    CorrespondenceSet far = given.matches;
+    far.source_points.array() += offset;
+    far.target_points.array() += offset;
+    const RefinedPose found = refine(far);
+    ASSERT_EQ(found.status, RefineStatus::Refined);
+    EXPECT_LT(small_angle(*found.target_from_source, *near.target_from_source), 1e-7) << offset;
+    EXPECT_NEAR(found.final_rms_pr, near.final_rms_pr, 1e-5) << offset;
+  }
+}
+
+TEST(RefineRigid, TooFewRows) {
+  const CorrespondenceSet matches = problem(10, 1, 0, 11).matches;
+  for (const Indices& rows : {Indices{}, Indices{4}, Indices{4, 7}}) {
+    const RefinedPose found = refine_rigid(matches, rows);
+    expect_no_pose(found, RefineStatus::TooFewRows);
+    EXPECT_FALSE(found.initial.has_value());
+  }
+  EXPECT_EQ(refine_rigid(matches, {4, 7, 9}).status, RefineStatus::Refined);
+  expect_no_pose(refine_rigid(testing::table_of_points({}, {}), {}), RefineStatus::TooFewRows);
+}
+
+TEST(RefineRigid, RowsWithoutExtentGiveNoPose) {
+  const std::vector<testing::Row3> spread{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
+  const std::vector<testing::Row3> line{{1, 1, 1}, {2, 3, 4}, {3, 5, 7}, {5, 9, 13}};
+  const std::vector<testing::Row3> place{{4, 5, 6}, {4, 5, 6}, {4, 5, 6}, {4, 5, 6}};
+  for (const auto& flat : {line, place}) {
+    expect_no_pose(refine(testing::table_of_points(flat, flat)), RefineStatus::DegenerateGeometry);
+    expect_no_pose(refine(testing::table_of_points(flat, spread)), RefineStatus::DegenerateGeometry);
+    expect_no_pose(refine(testing::table_of_points(spread, flat)), RefineStatus::DegenerateGeometry);
+  }
+  // One match many times.
+  const CorrespondenceSet matches = problem(10, 1, 0, 12).matches;
+  expect_no_pose(refine_rigid(matches, {3, 3, 3, 3}), RefineStatus::DegenerateGeometry);
+}
+
+TEST(RefineRigid, HugeLengthsGiveAFinitePoseOrNone) {
+  const CorrespondenceSet matches = problem(10, 1, 0.5, 13).matches;
+  const RefinedPose large = refine(testing::scaled(matches, 1e100));
+  ASSERT_EQ(large.status, RefineStatus::Refined);
+  EXPECT_TRUE(large.covariance->allFinite());
+  const RefinedPose huge = refine(testing::scaled(matches, 1e200));
+  EXPECT_EQ(huge.status == RefineStatus::Refined, huge.target_from_source.has_value());
+  if (huge.target_from_source) {
+    EXPECT_TRUE(huge.target_from_source->rotation.allFinite());
+    EXPECT_TRUE(huge.target_from_source->translation.allFinite());
+  }
+}
+
+TEST(RefineRigid, RefusesWhatItCannotUse) {
+  CorrespondenceSet matches = problem(10, 1, 0, 14).matches;
+  for (const int bad : {-1, 10, 2147483647}) EXPECT_THROW(refine_rigid(matches, {0, 1, 2, bad}), InvalidInput);
+  for (const int bad : {-1, 10}) EXPECT_THROW(refine_rigid(matches, {bad}), InvalidInput);
+  for (const double bad : {0.0, -5.0, std::nan(""), HUGE_VAL}) {
+    RefineOptions options;
+    options.loss_scale_pr = bad;
+    EXPECT_THROW(refine(matches, options), InvalidInput) << bad;
+  }
+  RefineOptions options;
+  options.maximum_iterations = -1;
+  EXPECT_THROW(refine(matches, options), InvalidInput);
+  matches.target_points(3, 1) = std::nan("");
+  EXPECT_THROW(refine(matches), InvalidInput);
+}
+
+TEST(RefineStatusText, IsWhatTheHeaderSays) {
+  EXPECT_STREQ(to_text(RefineStatus::Refined), "refined");
+  EXPECT_STREQ(to_text(RefineStatus::TooFewRows), "too few rows");
+  EXPECT_STREQ(to_text(RefineStatus::DegenerateGeometry), "degenerate geometry");
+  EXPECT_STREQ(to_text(RefineStatus::Diverged), "diverged");
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "kernel/surface/keypoints.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "kernel/error.h"
+#include "kernel/random.h"
+#include "kernel/surface/perturbation.h"
+#include "kernel/surface/resolution.h"
+#include "support/meshes.h"
+#include "support/reference_surface.h"
+
+namespace corral {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+Eigen::VectorXd response_within(const Points& vertices, double radius) {
+  const PointIndex index(vertices);
+  std::vector<std::vector<Neighbor>> neighborhoods;
+  for (int row = 0; row < vertices.rows(); ++row)
+    neighborhoods.push_back(index.within(vertices.row(row).transpose(), radius));
+  return harris_response(vertices, neighborhoods);
+}
+
+Keypoints detect(const Mesh& mesh, double resolution, const HarrisOptions& options = {}) {
+  return detect_harris(mesh, PointIndex(mesh.vertices), resolution, options);
+}
+
+double largest_difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// The surface of the cube [-side, side]^3, sampled at whole coordinates.
+Points cube_surface(int side) {
+  std::vector<Eigen::RowVector3d> places;
+  for (int x = -side; x <= side; ++x)
+    for (int y = -side; y <= side; ++y)
+      for (int z = -side; z <= side; ++z)
+        if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == side) places.emplace_back(x, y, z);
+  Points points(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t i = 0; i < places.size(); ++i) points.row(static_cast<Eigen::Index>(i)) = places[i];
+  return points;
+}
+
+/// The most outstanding of the rows that satisfy a condition.
+template <class Condition>
+double largest_where(const Points& points, const Eigen::VectorXd& values, Condition&& condition) {
+  double largest = -1;
+  for (int row = 0; row < points.rows(); ++row)
+    if (condition(Eigen::Vector3d(points.row(row).transpose()))) largest = std::max(largest, values(row));
+  return largest;
+}
+
+TEST(HarrisResponse, AgreesWithTheReference) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    const Points vertices = testing::bumpy_sphere(4, seed).vertices;
+    const double radius = 3 * point_resolution(vertices);
+    const Eigen::VectorXd response = response_within(vertices, radius);
+    EXPECT_LT(largest_difference(response, testing::reference_harris_response(vertices, radius)), 1e-9);
+    EXPECT_GT(response.maxCoeff(), 1e-4);
+    EXPECT_GE(response.minCoeff(), -1e-15);
+    EXPECT_LE(response.maxCoeff(), 1.0 / 27);
+  }
+}
+
+TEST(HarrisResponse, IsZeroOnFlatGroundAndAlongACylinder) {
+  EXPECT_LT(response_within(testing::grid(15, 15).vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  Points cylinder(30 * 20, 3);
+  for (int row = 0; row < cylinder.rows(); ++row) {
+    const double angle = 2 * std::acos(-1.0) * (row % 30) / 30;
+    cylinder.row(row) << 5 * std::cos(angle), 5 * std::sin(angle), row / 30;
+  }
+  // Away from the open ends all normals are at right angles to the axis: the determinant is zero.
+  const Eigen::VectorXd response = response_within(cylinder, 2.5);
+  EXPECT_LT(largest_where(cylinder, response, [](const Eigen::Vector3d& x) { return x.z() > 5.5 && x.z() < 13.5; }),
+            1e-15);
+}
+
+TEST(HarrisResponse, CornersStandOutOnACube) {
+  const Points points = cube_surface(8);
+  const Eigen::VectorXd response = response_within(points, 3);
+  const auto at_limit = [](const Eigen::Vector3d& x) { return (x.array().abs() == 8).count(); };
+  const double corner = largest_where(points, response, [&](const Eigen::Vector3d& x) { return at_limit(x) == 3; });
+  const double edge = largest_where(
+      points, response, [&](const Eigen::Vector3d& x) { return at_limit(x) == 2 && x.cwiseAbs().minCoeff() <= 1; });
+  const double face = largest_where(
+      points, response, [&](const Eigen::Vector3d& x) { return at_limit(x) == 1 && x.cwiseAbs().sum() <= 9; });
+  EXPECT_GT(corner, 0.005);
+  EXPECT_LT(edge, 1e-15);
+  EXPECT_LT(face, 1e-15);
+}
+
+TEST(HarrisResponse, ThreeOrthogonalPlanesReachTheLimit) {
+  // Three flat patches, and one vertex that sees a vertex of each, and one that has no normal: A = I / 3.
+  Points points(11, 3);
+  points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 50, 0, 0, 50, 1, 0, 50, 0, 1, 0, 50, 0, 1, 50, 0, 0, 50, 1, 9, 9, 9, 8, 8, 8;
+  std::vector<std::vector<Neighbor>> around(11);
+  for (int row = 0; row < 9; ++row)
+    for (int other = row / 3 * 3; other < row / 3 * 3 + 3; ++other)
+      around[static_cast<std::size_t>(row)].push_back({other, 1});
+  around[9] = {{0, 1}, {3, 1}, {6, 1}, {10, 1}};
+  around[10] = {{9, 1}, {10, 0}};
+  const Eigen::VectorXd response = harris_response(points, around);
+  EXPECT_LT(response.head(9).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_NEAR(response(9), 1.0 / 27, 1e-15);
+}
+
+TEST(HarrisResponse, VerticesWithoutANormalAreLeftOut) {
+  EXPECT_EQ(response_within(Points::Zero(1, 3), 1)(0), 0);
+  EXPECT_EQ(response_within(Points::Zero(50, 3), 1).cwiseAbs().maxCoeff(), 0);
+  Points line = Points::Zero(30, 3);
+  for (int row = 0; row < 30; ++row) line.row(row) = (0.1 * row + 1) * Eigen::RowVector3d(1, -2, 0.3);
+  EXPECT_EQ(response_within(line, 1.5).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(response_within(line.array() + 1e3, 1.5).cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(HarrisResponse, RigidMotionDoesNotChangeIt) {
+  const Mesh mesh = testing::bumpy_sphere(4, 3);
+  const double radius = 3 * point_resolution(mesh.vertices);
+  const Mesh moved = move_mesh(mesh, random_motion(mesh, 4));
+  EXPECT_LT(largest_difference(response_within(mesh.vertices, radius), response_within(moved.vertices, radius)), 1e-9);
+}
+
+TEST(DetectHarris, AgreesWithTheReference) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Mesh mesh = testing::bumpy_sphere(4, seed);
+    const double resolution = point_resolution(mesh.vertices);
+    HarrisOptions options;
+    for (const double radius_pr : {2.0, 3.0, 4.5}) {
+      options.radius_pr = radius_pr;
+      const Keypoints found = detect(mesh, resolution, options);
+      const Keypoints expected = testing::reference_harris(mesh.vertices, resolution, options);
+      EXPECT_EQ(found.vertices, expected.vertices);
+      EXPECT_EQ(found.candidates, expected.candidates);
+      EXPECT_EQ(found.dropped_small_support, expected.dropped_small_support);
+      EXPECT_GT(found.vertices.size(), 5u);
+    }
+  }
+}
+
+TEST(DetectHarris, SupportIsCountedWithoutTheKeypoint) {
+  const Mesh mesh = testing::bumpy_sphere(3, 5);
+  const double resolution = point_resolution(mesh.vertices);
+  HarrisOptions options;
+  options.support_radius_pr = 3;
+  const int candidates = detect(mesh, resolution, options).candidates;
+  for (int minimum = 0; minimum < 60; ++minimum) {
+    options.minimum_support = minimum;
+    const Keypoints found = detect(mesh, resolution, options);
+    EXPECT_EQ(found.vertices, testing::reference_harris(mesh.vertices, resolution, options).vertices) << minimum;
+    EXPECT_EQ(static_cast<int>(found.vertices.size()) + found.dropped_small_support, candidates);
+  }
+}
+
+TEST(DetectHarris, FlatGroundHasNone) {
+  const Keypoints none = detect(testing::grid(20, 20), 1);
+  EXPECT_THAT(none.vertices, IsEmpty());
+  EXPECT_EQ(none.candidates, 0);
+}
+
+TEST(DetectHarris, EqualResponsesGoToTheLowerIndex) {
+  // Every vertex twice: the two copies tie exactly.
+  Mesh mesh = testing::bumpy_sphere(3, 6);
+  const double resolution = point_resolution(mesh.vertices);
+  const Indices single = detect(mesh, resolution).vertices;
+  const Eigen::Index count = mesh.vertices.rows();
+  mesh.vertices = mesh.vertices.replicate(2, 1).eval();
+  const Keypoints doubled = detect(mesh, resolution);
+  EXPECT_EQ(doubled.vertices, single);
+  EXPECT_LT(doubled.vertices.back(), count);
+}
+
+TEST(DetectHarris, RigidMotionKeepsTheKeypoints) {
+  for (const std::uint64_t seed : {7u, 8u}) {
+    const Mesh mesh = testing::bumpy_sphere(4, seed);
+    const double resolution = point_resolution(mesh.vertices);
+    EXPECT_EQ(detect(move_mesh(mesh, random_motion(mesh, seed)), resolution).vertices,
+              detect(mesh, resolution).vertices);
+  }
+}
+
+TEST(DetectHarris, PermutedVerticesGiveThePermutedKeypoints) {
+  const Mesh mesh = testing::bumpy_sphere(4, 9);
+  const double resolution = point_resolution(mesh.vertices);
+  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
+  Indices old_row(count);
+  std::iota(old_row.begin(), old_row.end(), 0);
+  RandomStream random(10);
+  for (std::size_t i = count; i > 1; --i) std::swap(old_row[i - 1], old_row[random.below(i)]);
+  Mesh shuffled;
+  shuffled.vertices.resize(mesh.vertices.rows(), 3);
+  for (std::size_t i = 0; i < count; ++i)
+    shuffled.vertices.row(static_cast<Eigen::Index>(i)) = mesh.vertices.row(old_row[i]);
+
+  Indices found;
+  for (const int row : detect(shuffled, resolution).vertices) found.push_back(old_row[static_cast<std::size_t>(row)]);
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, detect(mesh, resolution).vertices);
+}
+
+TEST(DetectHarris, TooLittleSurfaceGivesNone) {
+  Mesh mesh;
+  mesh.vertices = Points::Random(2, 3);
+  EXPECT_THAT(detect(mesh, 1).vertices, IsEmpty());
+  mesh.vertices = Points::Ones(2000, 3);
+  EXPECT_THAT(detect(mesh, 1).vertices, IsEmpty());
+}
+
+TEST(DetectHarris, NoVerticesGiveNone) {
+  EXPECT_EQ(response_within(Points(0, 3), 1).size(), 0);
+  EXPECT_THAT(detect({Points(0, 3), Triangles(0, 3)}, 1).vertices, IsEmpty());
+}
+
+TEST(DetectHarris, LengthsAreChecked) {
+  const Mesh mesh = testing::icosphere(1);
+  for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    HarrisOptions options;
+    EXPECT_THROW(detect(mesh, bad), InvalidInput);
+    options.radius_pr = bad;
+    EXPECT_THROW(detect(mesh, 1, options), InvalidInput);
+    options = {};
+    options.support_radius_pr = bad;
+    EXPECT_THROW(detect(mesh, 1, options), InvalidInput);
+  }
+}
+
+}  // namespace
+}  // namespace corral

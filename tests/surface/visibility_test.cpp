@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "kernel/surface/visibility.h"
+
+#include <gtest/gtest.h>
+
+#include "kernel/random.h"
+#include "support/meshes.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using testing::points_of;
+
+TEST(OverlapPoints, KeepsTheSourcePointsWithATargetNearTheirImage) {
+  const PointIndex target(points_of({{10, 0, 0}, {20, 0, 0}}));
+  const RigidTransform shift{Eigen::Matrix3d::Identity(), {10, 0, 0}};
+  const Points source = points_of({{0, 0, 0}, {0, 2, 0}, {0, 2.001, 0}, {10, 0, -1}, {30, 0, 0}});
+  // Where they are in the source, in their order; the threshold is inclusive.
+  const Points shared = overlap_points(source, target, shift, 2);
+  ASSERT_EQ(shared.rows(), 3);
+  EXPECT_EQ(shared, points_of({{0, 0, 0}, {0, 2, 0}, {10, 0, -1}}));
+}
+
+TEST(OverlapPoints, NothingInCommonGivesNoRows) {
+  const Points source = testing::grid(4, 4).vertices;
+  const RigidTransform far{Eigen::Matrix3d::Identity(), {0, 0, 50}};
+  EXPECT_EQ(overlap_points(source, PointIndex(source), far, 1).rows(), 0);
+  EXPECT_EQ(overlap_points(Points(0, 3), PointIndex(source), {}, 1).rows(), 0);
+}
+
+TEST(OverlapPoints, TargetWithoutPointsGivesNoRows) {
+  EXPECT_EQ(overlap_points(testing::grid(4, 4).vertices, PointIndex(Points(0, 3)), {}, 1).rows(), 0);
+}
+
+TEST(OverlapPoints, AMovedCopyOverlapsWholly) {
+  const Points source = testing::bumpy_sphere(3, 1).vertices;
+  RandomStream random(2);
+  const RigidTransform motion{random.rotation(), {5, -6, 7}};
+  EXPECT_EQ(overlap_points(source, PointIndex(motion.apply(source)), motion, 1e-9), source);
+  EXPECT_EQ(overlap_points(source, PointIndex(motion.apply(source)), motion.inverse(), 1e-9).rows(), 0);
+}
+
+}  // namespace
+}  // namespace corral
