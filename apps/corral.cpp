@@ -54,6 +54,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string first = argc > 1 ? argv[1] : "-";
+    const auto is_first = [&](const CLI::App* command) { return command->get_name() == first; };
+    if (first[0] != '-' && app.get_subcommands(is_first).empty()) {
+      corral::say("corral: unknown command '" + first + "', expected one of those in corral --help");
+      return corral::kUsage;
+    }
     return app.exit(error) == 0 ? corral::kOk : corral::kUsage;
   }
   return run_action(action);

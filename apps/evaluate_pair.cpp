@@ -42,7 +42,7 @@ MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& g
     if (truth && record.pose.target_from_source)
       record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
   } catch (const std::exception& error) {
-    record.failure = error.what();
+    record.failure = *error.what() ? error.what() : "no reason given";
   }
   return record;
 }

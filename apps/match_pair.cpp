@@ -2,6 +2,7 @@
 #include "apps/match_pair.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "apps/stopwatch.h"
 #include "kernel/error.h"
@@ -51,17 +52,26 @@ Descriptors describe(const Mesh& mesh, const std::string& side, double resolutio
   return descriptors;
 }
 
+/// Advice on a radius (in the side's own pr) that is far from the usual one.
+std::string radius_hint(const std::string& what, double radius_pr, double usual_pr) {
+  if (radius_pr > usual_pr / 2 && radius_pr < usual_pr * 2) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", radius_pr);
+  return "the " + what + " radius is " + text + " pr of this side, use about " + to_text(usual_pr) + " pr; ";
+}
+
 void add_hints(const MatchReport& report, const MatchSettings& settings, std::vector<std::string>& hints) {
   const auto hint = [&](const SurfaceReport& side, const std::string& name) {
     if (side.keypoints > 0) return;
-    const std::string radius = " radius is " + to_text(report.resolution / side.resolution);
+    const double scale = report.resolution / side.resolution;  // from pr of the pair to the side's own
     if (side.candidates == 0)
-      hints.push_back("no keypoint on the " + name + ": the keypoint" + radius + " x " +
-                      to_text(settings.keypoint_radius_pr) +
-                      " of its own pr, use about 3 pr (a flat surface has none)");
+      hints.push_back("no keypoint on the " + name + ": " +
+                      radius_hint("keypoint", settings.keypoint_radius_pr * scale, 3) +
+                      "a flat surface has none");
     else
-      hints.push_back("no keypoint of the " + name + " could be described: the support" + radius + " x " +
-                      to_text(settings.support_radius_pr) + " of its own pr, use about 15 pr");
+      hints.push_back("no keypoint of the " + name +
+                      " could be described: " + radius_hint("support", settings.support_radius_pr * scale, 15) +
+                      "each needs 10 vertices around it");
   };
   hint(report.source, "source");
   hint(report.target, "target");

@@ -157,18 +157,22 @@ TextTable::TextTable(std::vector<std::string> header) { rows_.push_back(std::mov
 void TextTable::add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
 
 std::string TextTable::str() const {
-  std::vector<std::size_t> widths(rows_.front().size(), 0);
-  for (const auto& row : rows_)
-    for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], std::max<std::size_t>(row[i].size(), 1));
+  const std::size_t columns = rows_.front().size();
+  std::vector<std::size_t> widths(columns, 1);
+  std::vector<bool> is_text(columns, false);
+  for (std::size_t row = 0; row < rows_.size(); ++row)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::string& cell = rows_[row].at(i);
+      widths[i] = std::max(widths[i], cell.size());
+      if (row > 0 && !cell.empty() && !parse_double(cell)) is_text[i] = true;
+    }
   std::string text;
   for (const auto& row : rows_) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string cell = row[i].empty() ? "-" : row[i];
       const std::string space(widths[i] - cell.size(), ' ');
-      const bool left = i == 0 || i + 1 == row.size();
-      line += (i > 0 ? "  " : "") + (left ? cell + space : space + cell);
+      line += (i > 0 ? "  " : "") + (is_text[i] ? cell + space : space + cell);
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }

@@ -40,7 +40,10 @@ void write_all(int descriptor, const std::string& content, const std::string& pa
   }
 }
 
-mode_t default_mode() {
+/// Permissions of the file that is there, else those that the umask gives a new one.
+mode_t mode_for(const fs::path& place) {
+  struct stat status;
+  if (::stat(place.c_str(), &status) == 0) return status.st_mode & 07777;
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return 0666 & ~mask;
@@ -70,7 +73,7 @@ class StagedFile {
     }
     try {
       write_all(descriptor.value, file.content, file.path);
-      if (::fchmod(descriptor.value, default_mode()) != 0) fail(file.path, "be given its permissions");
+      if (::fchmod(descriptor.value, mode_for(place_)) != 0) fail(file.path, "be given its permissions");
     } catch (...) {
       discard();
       throw;
@@ -130,12 +133,24 @@ void write_files(const std::vector<FileContent>& files) {
   for (const auto& file : staged) file->commit();
 }
 
+void check_writable(const std::string& path) {
+  const FileContent nothing{path, ""};
+  const StagedFile staged(nothing);  // made and discarded
+}
+
 void write_file(const std::string& path, const std::string& content) { write_files({{path, content}}); }
 
 void remove_file(const std::string& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error) && !fs::remove(path, error))
     throw IoError(path, "", "cannot be removed (" + error.message() + ")");
+}
+
+void check_folder(const std::string& path) {
+  std::error_code error;
+  for (fs::path place = path; !place.empty() && place != place.parent_path(); place = place.parent_path())
+    if (fs::exists(place, error) && !fs::is_directory(place, error))
+      throw IoError(path, "", "cannot be created as a folder (" + place.string() + " is a file)");
 }
 
 void make_folder(const std::string& path) {

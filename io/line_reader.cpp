@@ -72,19 +72,26 @@ const std::vector<std::string_view>& LineReader::fields(char separator) {
   }
 }
 
-double LineReader::finite_number(std::string_view field) const {
+double LineReader::number(std::string_view field) const {
   const auto value = parse_double(field);
   if (!value) fail("found " + quoted(field) + ", expected a number");
-  if (!std::isfinite(*value)) fail("found " + quoted(field) + ", expected a finite number");
   return *value;
+}
+
+double LineReader::finite_number(std::string_view field) const {
+  const double value = number(field);
+  if (!std::isfinite(value)) fail("found " + quoted(field) + ", expected a finite number");
+  return value;
 }
 
 std::int64_t LineReader::integer(std::string_view field, std::int64_t low, std::int64_t high,
                                  const std::string& what) const {
   const auto value = parse_int(field);
   if (!value || *value < low || *value > high)
-    fail(what + " is " + quoted(field) + ", expected a whole number in " + std::to_string(low) + " .. " +
-         std::to_string(high));
+    fail(what + " is " + quoted(field) + ", expected " +
+         (low < high    ? "a whole number in " + std::to_string(low) + " .. " + std::to_string(high)
+          : low == high ? std::to_string(low)
+                        : "none: there is nothing to choose from"));
   return *value;
 }
 

@@ -28,6 +28,7 @@ class LineReader {
   const std::vector<std::string_view>& fields();
   const std::vector<std::string_view>& fields(char separator);
 
+  double number(std::string_view field) const;  ///< may be "nan" or "inf"
   double finite_number(std::string_view field) const;
   /// A whole number in low .. high.
   std::int64_t integer(std::string_view field, std::int64_t low, std::int64_t high, const std::string& what) const;

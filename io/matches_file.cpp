@@ -26,14 +26,20 @@ void read_preamble(LineReader& reader, CorrespondenceSet& matches) {
   reader.need(kFirstLine);
   if (reader.line() != kFirstLine) reader.fail("found " + quoted(reader.line()) + ", expected " + quoted(kFirstLine));
   bool has_resolution = false;
+  const auto once = [&](bool seen) {
+    if (seen) reader.fail("found " + quoted(reader.line()) + " a second time, expected it once");
+  };
   for (reader.need("'# resolution R'"); reader.line().front() == '#'; reader.need("the header of the columns")) {
-    const auto fields = reader.fields();
+    std::vector<std::string_view> fields = reader.fields();
+    if (fields[0].size() > 1) fields.insert(fields.begin() + 1, fields[0].substr(1));  // "#resolution 1"
     if (fields.size() == 3 && fields[1] == "resolution") {
+      once(has_resolution);
       matches.resolution = reader.finite_number(fields[2]);
       if (!(matches.resolution > 0))
         reader.fail("the resolution is " + quoted(fields[2]) + ", expected a length above zero");
       has_resolution = true;
     } else if (fields.size() >= 2 && fields[1] == "source_centroid") {
+      once(matches.source_centroid.has_value());
       if (fields.size() != 5) reader.fail("found " + quoted(reader.line()) + ", expected '# source_centroid x y z'");
       matches.source_centroid = Eigen::Vector3d(reader.finite_number(fields[2]), reader.finite_number(fields[3]),
                                                 reader.finite_number(fields[4]));

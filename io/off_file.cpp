@@ -59,7 +59,7 @@ Mesh parse_off(const std::string& path, std::string_view content) {
   for (std::int64_t face = 0; face < counts.faces; ++face) {
     reader.need("face " + std::to_string(face) + " of " + std::to_string(counts.faces));
     const auto& fields = reader.fields();
-    const auto size = static_cast<std::size_t>(reader.integer(fields[0], 0, kMaximumCount, "the size of a face"));
+    const auto size = static_cast<std::size_t>(reader.integer(fields[0], 3, kMaximumCount, "the size of a face"));
     if (fields.size() - 1 < size)
       reader.fail("found " + std::to_string(fields.size() - 1) + " corners, expected " + std::to_string(size));
     corners.clear();

@@ -7,6 +7,7 @@
 #include "io/line_reader.h"
 #include "io/mesh_file.h"
 #include "kernel/error.h"
+#include "kernel/number_text.h"
 
 namespace corral {
 namespace {
@@ -76,24 +77,30 @@ Encoding parse_format(const LineReader& reader, const std::vector<std::string_vi
               ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
 }
 
+bool is_remark(std::string_view keyword) { return keyword == "comment" || keyword == "obj_info"; }
+
 Header parse_header(LineReader& reader) {
   Header header;
   reader.need("the word ply");
   if (reader.line() != "ply") reader.fail("found " + quoted(reader.line()) + ", expected the word ply");
-  reader.need("the format");
+  do reader.need("the format");
+  while (is_remark(reader.fields()[0]));
   header.encoding = parse_format(reader, reader.fields());
   while (true) {
     reader.need("end_header");
     const auto& fields = reader.fields();
     if (fields[0] == "end_header") return header;
-    if (fields[0] == "comment" || fields[0] == "obj_info") continue;
+    if (is_remark(fields[0])) continue;
     if (fields[0] == "element" && fields.size() == 3) {
       for (const Element& other : header.elements)
         if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
       header.elements.push_back(
           {std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
     } else if (fields[0] == "property" && !header.elements.empty()) {
-      header.elements.back().properties.push_back(parse_property(reader, fields));
+      const Property property = parse_property(reader, fields);
+      if (header.elements.back().find(property.name) >= 0)
+        reader.fail("property " + quoted(property.name) + " stands twice");
+      header.elements.back().properties.push_back(property);
     } else {
       reader.fail("found " + quoted(reader.line()) + ", expected an element or a property");
     }
@@ -110,15 +117,19 @@ class TextBody {
   std::size_t bytes_left() const { return reader_.rest().size(); }
 
   void begin(const Element& element, std::int64_t row) {
-    reader_.need(element.name + " " + std::to_string(row) + " of " + std::to_string(element.count));
+    reader_.need("element " + quoted(element.name) + " " + std::to_string(row) + " of " +
+                 std::to_string(element.count));
     fields_ = &reader_.fields();
     next_ = 0;
   }
   double value(const Type& type) {
     if (next_ == fields_->size()) fail("found " + std::to_string(next_) + " values, expected more");
     const std::string_view field = (*fields_)[next_++];
-    if (type.kind == 'f') return reader_.finite_number(field);
-    return static_cast<double>(reader_.integer(field, -kMaximumCount - 1, 2 * kMaximumCount + 1, "a whole value"));
+    if (type.kind == 'f') return reader_.number(field);
+    const std::int64_t values = std::int64_t{1} << (8 * type.bytes);
+    const std::int64_t low = type.kind == 'i' ? -values / 2 : 0;
+    return static_cast<double>(
+        reader_.integer(field, low, low + values - 1, "a value of type " + std::string(type.name)));
   }
   std::size_t values_left() const { return fields_->size() - next_; }
   void end() {
@@ -153,24 +164,25 @@ class BinaryBody {
   void begin(const Element&, std::int64_t) {}
 
   double value(const Type& type) {
+    place_ = all_.size() - left_.size();
     if (left_.size() < type.bytes) fail("the file ends within a value");
     std::array<unsigned char, 8> raw{};
     std::uint64_t bits = 0;
     std::memcpy(raw.data(), left_.data(), type.bytes);
     for (std::size_t i = 0; i < type.bytes; ++i) bits = bits << 8 | raw[kBigEndian ? i : type.bytes - 1 - i];
     const double number = decode(type, bits);
-    if (!std::isfinite(number)) fail("found a number that is not finite");
     left_.remove_prefix(type.bytes);
     return number;
   }
   std::size_t values_left() const { return left_.size(); }
   void end() {}
   void finish() {
+    place_ = all_.size() - left_.size();
     if (!left_.empty())
       fail(std::to_string(left_.size()) + " bytes follow the last element, expected the end of the file");
   }
   [[noreturn]] void fail(const std::string& problem) const {
-    throw IoError(path_, "byte " + std::to_string(all_.size() - left_.size()) + " after the header", problem);
+    throw IoError(path_, "byte " + std::to_string(place_) + " after the header", problem);
   }
 
  private:
@@ -193,6 +205,7 @@ class BinaryBody {
 
   const std::string& path_;
   std::string_view all_, left_;
+  std::size_t place_ = 0;  // of the value read last
 };
 
 /// Where the properties that make a mesh stand.
@@ -235,8 +248,8 @@ class MeshReader {
     const std::size_t smallest = Body::smallest(element);
     if (smallest > 0 && static_cast<std::size_t>(element.count) > body_.bytes_left() / smallest + 1)
       throw IoError(path_, "header",
-                    "promises " + std::to_string(element.count) + " of element " + element.name + ", but only " +
-                        std::to_string(body_.bytes_left()) + " bytes follow");
+                    "promises " + std::to_string(element.count) + " of element " + quoted(element.name) +
+                        ", but only " + std::to_string(body_.bytes_left()) + " bytes follow");
   }
 
   Layout layout_of(const Element& element) const {
@@ -265,7 +278,8 @@ class MeshReader {
         if (is_face && place == layout.corners) add_face();
       } else {
         const double value = body_.value(*property.type);
-        if (!is_vertex) continue;
+        if (!is_vertex || (place != layout.x && place != layout.y && place != layout.z)) continue;
+        if (!std::isfinite(value)) body_.fail("found " + to_text(value) + ", expected a finite coordinate");
         if (place == layout.x) mesh_.vertices(row, 0) = value;
         if (place == layout.y) mesh_.vertices(row, 1) = value;
         if (place == layout.z) mesh_.vertices(row, 2) = value;
@@ -276,7 +290,7 @@ class MeshReader {
 
   void read_list(const Property& property) {
     const double count = body_.value(*property.count_type);
-    if (count < 0 || count > static_cast<double>(body_.values_left()))
+    if (!(count >= 0) || count > static_cast<double>(body_.values_left()))
       body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
                  " values, expected no more than follow");
     list_.clear();
@@ -284,10 +298,12 @@ class MeshReader {
   }
 
   void add_face() {
+    if (list_.size() < 3) body_.fail("a face of " + std::to_string(list_.size()) + " corners, expected at least three");
     Indices corners;
     int largest = -1;
     for (const double corner : list_) {
-      if (corner < 0 || corner > static_cast<double>(kMaximumCount)) body_.fail("a corner is below 0 or too large");
+      if (!(corner >= 0) || corner > static_cast<double>(kMaximumCount))
+        body_.fail("a corner is " + to_text(corner) + ", expected a vertex");
       corners.push_back(static_cast<int>(corner));
       largest = std::max(largest, corners.back());
     }

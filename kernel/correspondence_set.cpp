@@ -58,6 +58,12 @@ void CorrespondenceSet::validate() const {
   if (source_centroid) check_finite("source_centroid", Eigen::Matrix<double, 1, 3>(source_centroid->transpose()));
 }
 
+void check_rows(const CorrespondenceSet& matches, const Indices& rows, const std::string& who) {
+  for (const int row : rows)
+    if (row < 0 || row >= matches.size())
+      throw InvalidInput(who, "row", std::to_string(row), "one of " + std::to_string(matches.size()) + " rows from 0");
+}
+
 void require_columns(const CorrespondenceSet& matches, const std::string& who, std::initializer_list<Column> columns) {
   matches.validate();
   if (matches.size() == 0) return;

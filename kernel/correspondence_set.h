@@ -34,6 +34,9 @@ struct CorrespondenceSet {
   void validate() const;
 };
 
+/// Throws InvalidInput naming the first of some rows that the table does not have.
+void check_rows(const CorrespondenceSet& matches, const Indices& rows, const std::string& who);
+
 /// Columns that not every table has.
 enum class Column { SourceFrames, TargetFrames, FeatureDistance, SecondFeatureDistance };
 

@@ -12,7 +12,8 @@ namespace corral {
 std::string to_text(double value);
 
 /// The whole text as a number, independent of the locale; a leading '+' is accepted. Absent if any character is left
-/// over or the value does not fit the type. "nan" and "inf" parse as double: the caller decides whether they may stand.
+/// over or the value does not fit the type; a double too small for one is 0. "nan" and "inf" parse as double: the caller
+/// decides whether they may stand.
 std::optional<double> parse_double(std::string_view text);
 std::optional<std::int64_t> parse_int(std::string_view text);
 std::optional<std::uint64_t> parse_unsigned(std::string_view text);

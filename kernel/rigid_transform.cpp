@@ -38,6 +38,7 @@ std::optional<RigidTransform> fit_rigid_transform(const Points& source, const Po
 }
 
 std::optional<RigidTransform> fit_rigid_transform(const CorrespondenceSet& matches, const Indices& rows) {
+  check_rows(matches, rows, "fit_rigid_transform");
   return fit_rigid_transform(matches.source_points(rows, Eigen::all), matches.target_points(rows, Eigen::all));
 }
 

@@ -40,7 +40,7 @@ bool is_rotation(const Eigen::Matrix3d& matrix, double tolerance);
 /// Throws    InvalidInput if the two sides differ in length.
 std::optional<RigidTransform> fit_rigid_transform(const Points& source, const Points& target);
 
-/// The same over chosen rows of a table of matches.
+/// The same over chosen rows of a table of matches. Throws InvalidInput for a row that is not there.
 std::optional<RigidTransform> fit_rigid_transform(const CorrespondenceSet& matches, const Indices& rows);
 
 /// Area of the triangle a, b, c in squared units of the points.

@@ -117,9 +117,7 @@ void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOp
     throw InvalidInput("refine_rigid", "loss_scale_pr", options.loss_scale_pr, "a finite length above zero");
   if (options.maximum_iterations < 1)
     throw InvalidInput("refine_rigid", "maximum_iterations", options.maximum_iterations, "at least 1");
-  for (const int row : rows)
-    if (row < 0 || row >= matches.size())
-      throw InvalidInput("refine_rigid", "row", std::to_string(row), "0 .. " + std::to_string(matches.size() - 1));
+  check_rows(matches, rows, "refine_rigid");
 }
 
 }  // namespace
@@ -157,14 +155,16 @@ RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, 
   refined.iterations = static_cast<int>(summary.iterations.size()) - 1;
   refined.converged = summary.termination_type == ceres::CONVERGENCE;
   refined.final_rms_pr = rms(pose, centred);
-  const PoseCovariance covariance = centred_covariance(pose, centred, options.loss_scale_pr);
+  const PoseCovariance covariance =
+      uncentred(centred_covariance(pose, centred, options.loss_scale_pr), pose, centred, matches.resolution);
   if (!summary.IsSolutionUsable() || !covariance.allFinite()) {
     refined.status = RefineStatus::Diverged;
+    refined.converged = false;
     return refined;
   }
   refined.status = RefineStatus::Refined;
   refined.target_from_source = uncentred(pose, centred, matches.resolution);
-  refined.covariance = uncentred(covariance, pose, centred, matches.resolution);
+  refined.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
   return refined;
 }
 

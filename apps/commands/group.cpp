@@ -53,12 +53,14 @@ ConfiguredGrouper configure_grouper(const std::string& method, const std::vector
 void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper on a table of matches");
   auto settings = std::make_shared<Settings>();
-  command->add_option("matches", settings->matches, "Table of matches")->required();
+  command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("-m,--method", settings->method, "ss, nnsr, ransac, st, gc, hough or si")->required();
   command->add_option("--set", settings->set, "An option of the method as key=value; 'corral groupers' lists them")
+      ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
-  command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)");
+  command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)")
+      ->type_name("FILE");
   command->add_option("--repeat", settings->repeat, "Timed calls; the median is reported")->capture_default_str();
   command->add_flag("--json", settings->json,
                     "Counts and time as JSON on standard output (the selection then needs -o)");

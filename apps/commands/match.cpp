@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/progress.h"
 #include "apps/report.h"
+#include "io/file.h"
 #include "io/matches_file.h"
 #include "io/mesh_file.h"
 #include "kernel/error.h"
@@ -20,6 +21,7 @@ struct Settings {
 
 int match(const Settings& settings) {
   check_usage(settings.match);
+  if (!settings.output.empty()) check_writable(settings.output);
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   MatchedPair pair;
   {
@@ -39,7 +41,10 @@ int match(const Settings& settings) {
 
 Mesh read_surface(const std::string& path) {
   Mesh mesh = read_mesh(path);
-  if (!(bounding_box_diagonal(mesh.vertices) > 0))
+  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  if (!std::isfinite(diagonal))
+    throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
+  if (!(diagonal > 0))
     throw IoError(path, "",
                   "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +
                       "at least two places (the resolution would be zero)");
@@ -72,9 +77,10 @@ void check_usage(const MatchSettings& settings) {
 void add_match(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("match", "Keypoints, descriptors and their matches: two meshes in, one table out");
   auto settings = std::make_shared<Settings>();
-  command->add_option("source", settings->source, "Source mesh (a model)")->required();
-  command->add_option("target", settings->target, "Target mesh (a scene)")->required();
-  command->add_option("-o,--output", settings->output, "Where the table goes (default: standard output)");
+  command->add_option("source", settings->source, "Source mesh (a model)")->type_name("FILE")->required();
+  command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
+  command->add_option("-o,--output", settings->output, "Where the table goes (default: standard output)")
+      ->type_name("FILE");
   command->add_flag("--json", settings->json, "The stage report as JSON on standard output (the table then needs -o)");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report in words on standard error");
   add_match_options(*command, settings->match);

@@ -39,9 +39,10 @@ int perturb(const Settings& settings) {
 void add_perturb(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("perturb", "A moved and noisy copy of a mesh, with the motion that made it");
   auto settings = std::make_shared<Settings>();
-  command->add_option("mesh", settings->mesh, "Mesh or point cloud")->required();
-  command->add_option("-o,--output", settings->output, "The copy (PLY)")->required();
-  command->add_option("--truth", settings->truth, "Where the motion goes: copy_from_mesh, a 4x4 matrix");
+  command->add_option("mesh", settings->mesh, "Mesh or point cloud")->type_name("FILE")->required();
+  command->add_option("-o,--output", settings->output, "The copy (PLY)")->type_name("FILE")->required();
+  command->add_option("--truth", settings->truth, "Where the motion goes: copy_from_mesh, a 4x4 matrix")
+      ->type_name("FILE");
   command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise on every coordinate")
       ->capture_default_str();
   command->add_option("--seed", settings->seed, "Seed of motion and noise")->capture_default_str();

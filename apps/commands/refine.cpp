@@ -66,14 +66,16 @@ int refine(const Settings& settings) {
 void add_refine(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("refine", "The rigid pose behind a selection, refined");
   auto settings = std::make_shared<Settings>();
-  command->add_option("matches", settings->matches, "Table of matches")->required();
-  command->add_option("group", settings->group, "Selection made of it")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds the errors of the pose");
+  command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
+  command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
+  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds the errors of the pose")
+      ->type_name("FILE");
   command
       ->add_option("--threshold-pr", settings->threshold_pr,
                    "Residual of a right match; RMSE is taken over the source points of the right matches")
       ->capture_default_str();
-  command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)");
+  command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)")
+      ->type_name("FILE");
   command->add_flag("--json", settings->json, "Pose, covariance, errors and status as JSON on standard output");
   command->footer(
       "Without a pose (fewer than 3 rows, or all on one line) there is no pose file and the status says why.\n"

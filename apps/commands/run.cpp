@@ -92,6 +92,7 @@ void write_folder(const PairRun& run, const Settings& settings) {
 }
 
 PairRun evaluate(const Settings& settings, const std::vector<std::string>& methods) {
+  if (!settings.output.empty()) check_folder(settings.output);
   std::vector<ConfiguredGrouper> configured;
   for (const std::string& name : methods) configured.push_back(configure_grouper(name, {}));
   PairRun run;
@@ -145,12 +146,13 @@ int run_pair(const Settings& settings) {
 void add_run(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every method");
   auto settings = std::make_shared<Settings>();
-  command->add_option("source", settings->source, "Source mesh (a model)")->required();
-  command->add_option("target", settings->target, "Target mesh (a scene)")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors");
+  command->add_option("source", settings->source, "Source mesh (a model)")->type_name("FILE")->required();
+  command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
+  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors")
+      ->type_name("FILE");
   command->add_option("--methods", settings->methods, "all, or names between commas: ss,nnsr,ransac,st,gc,hough,si")
       ->capture_default_str();
-  command->add_option("-o,--output", settings->output, "Folder for every intermediate file");
+  command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
       ->capture_default_str();
   command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")

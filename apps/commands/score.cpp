@@ -47,9 +47,11 @@ void check_threshold(double threshold_pr) {
 void add_score(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("score", "Precision, recall and F1 of a selection against a true pose");
   auto settings = std::make_shared<Settings>();
-  command->add_option("matches", settings->matches, "Table of matches")->required();
-  command->add_option("group", settings->group, "Selection made of it")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix")->required();
+  command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
+  command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
+  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix")
+      ->type_name("FILE")
+      ->required();
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
       ->capture_default_str();
   command->add_flag("--json", settings->json, "As JSON; null where a ratio is undefined");

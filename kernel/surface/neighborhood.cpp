@@ -51,6 +51,7 @@ struct PointIndex::Tree {
         map(CGAL::make_property_map(std::as_const(points))),
         distance(map),
         tree(Search::Tree::Splitter(), Traits(map)) {
+    if (points.empty()) return;  // a tree over nothing cannot be built, and is never asked
     const auto indices = first_integers(points.size());
     tree.insert(indices.begin(), indices.end());
     tree.build();

@@ -7,7 +7,7 @@
 namespace corral {
 
 /// Unit normals, V x 3: the direction of least variance of the k nearest vertices (the vertex itself among them), turned
-/// to the side of the area-weighted sum of the face normals where the vertex has faces, else towards a sensor at the origin.
+/// to the side of the area-weighted sum of the face normals where that is not zero, else towards a sensor at the origin.
 /// A row is zero where fewer than 3 distinct neighbours, or all on one line, give no direction.
 ///
 /// Source    [rusu2009thesis] section 4.3; k = 20 after the program of [yang2017evaluation].

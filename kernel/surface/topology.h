@@ -11,7 +11,7 @@ struct Topology {
   int isolated_vertices = 0;    ///< vertices without a triangle (in a mesh that has triangles)
   int degenerate_faces = 0;     ///< triangles with a repeated corner or without area
   int non_manifold_faces = 0;   ///< triangles that no half-edge structure can take (third on an edge, or folded fan)
-  int components = 0;           ///< connected parts of the triangles
+  int components = 0;           ///< parts of the triangles that share no vertex
   int boundary_edges = 0;       ///< edges with one triangle
   int boundary_loops = 0;       ///< closed walks along boundary edges
   double mean_edge_length = 0;  ///< over all edges, mesh units; 0 without triangles

@@ -40,7 +40,7 @@ void expect_bad_input(const Outcome& outcome, const std::string& says) {
 TEST(Usage, ACommandIsNeeded) {
   const Workplace place;
   expect_usage(place.corral(""), "subcommand is required");
-  expect_usage(place.corral("banana"), "subcommand");
+  expect_usage(place.corral("banana"), "unknown command 'banana'");
   expect_usage(place.corral("info"), "mesh");
   expect_usage(place.corral("info --banana a.ply"), "--banana");
   expect_usage(place.corral("match one.ply"), "target");

@@ -163,7 +163,7 @@ TEST(Score, CountsAndDivides) {
   const Outcome text = place.corral("score matches.csv group.csv --truth truth.txt --threshold-pr 1e9");
   expect_ok(text);
   EXPECT_THAT(text.out, StartsWith("matches  selected  correct  true matches  precision  recall"));
-  EXPECT_THAT(text.out, HasSubstr("\n100            60       60           100     1.0000  0.6000  0.7500\n"));
+  EXPECT_THAT(text.out, HasSubstr("\n    100        60       60           100     1.0000  0.6000  0.7500\n"));
 }
 
 TEST(Score, AnUndefinedRatioIsNull) {

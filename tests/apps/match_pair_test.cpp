@@ -109,7 +109,7 @@ TEST(MatchPair, ARadiusTooSmallIsNamedWithABetterOne) {
   const Mesh bumpy = testing::bumpy_sphere(4, 1);
   for (const std::string& hint : report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints)
     EXPECT_THAT(hint,
-                AllOf(HasSubstr("keypoint radius is"), HasSubstr("0.25 of its own pr"), HasSubstr("use about 3 pr")));
+                AllOf(HasSubstr("keypoint radius is"), HasSubstr("0.25 pr of this side"), HasSubstr("use about 3 pr")));
   EXPECT_EQ(report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints.size(), 2U);
   const MatchReport small_support = report_of(bumpy, bumpy, {"mean", 3, 1});
   EXPECT_GT(small_support.source.candidates, 0);

@@ -209,5 +209,41 @@ TEST(MakeFolder, NamesAFileInTheWay) {
   EXPECT_EQ(text_of(taken), "x");
 }
 
+TEST(WriteFile, KeepsThePermissionsOfWhatWasThere) {
+  const ScratchFolder folder;
+  put_text(folder / "secret", "old");
+  fs::permissions(folder / "secret", fs::perms::owner_read | fs::perms::owner_write);
+  write_file(folder / "secret", "new");
+  EXPECT_EQ(fs::status(folder / "secret").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(WriteFiles, AllOrNone) {
+  const ScratchFolder folder;
+  EXPECT_THROW(write_files({{folder / "a", "1"}, {folder / "nowhere/b", "2"}}), IoError);
+  EXPECT_TRUE(folder.names().empty());
+  write_files({{folder / "a", "1"}, {folder / "b", "2"}});
+  EXPECT_EQ(folder.names().size(), 2U);
+}
+
+TEST(CheckWritable, SaysWhatWritingWouldAndChangesNothing) {
+  const ScratchFolder folder;
+  put_text(folder / "there", "old");
+  EXPECT_NO_THROW(check_writable(folder / "there"));
+  EXPECT_NO_THROW(check_writable(folder / "new"));
+  EXPECT_THROW(check_writable(folder / "nowhere/new"), IoError);
+  EXPECT_THROW(check_writable(folder / "."), IoError);
+  EXPECT_EQ(read_file(folder / "there"), "old");
+  EXPECT_EQ(folder.names().size(), 1U);
+}
+
+TEST(CheckFolder, AFileInTheWayIsAnError) {
+  const ScratchFolder folder;
+  put_text(folder / "file", "x");
+  EXPECT_THROW(check_folder(folder / "file"), IoError);
+  EXPECT_THROW(check_folder(folder / "file/below"), IoError);
+  EXPECT_NO_THROW(check_folder(folder / "new/below"));
+  EXPECT_EQ(folder.names().size(), 1U);
+}
+
 }  // namespace
 }  // namespace corral

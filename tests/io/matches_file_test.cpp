@@ -205,5 +205,16 @@ TEST(MatchesFile, TruncationAtEveryOtherByteIsAnError) {
   }
 }
 
+TEST(MatchesFile, TheSpaceBehindTheSharpMayBeMissing) {
+  EXPECT_EQ(read_text(replaced(kSmallest, "# resolution 0.5", "#resolution 0.25")).resolution, 0.25);
+}
+
+TEST(MatchesFile, ThePreambleSaysEverythingOnce) {
+  EXPECT_THAT(refusal(replaced(kSmallest, "# resolution 0.5\n", "# resolution 0.5\n# resolution 0.5\n")),
+              HasSubstr("line 3: found '# resolution 0.5' a second time"));
+  EXPECT_THAT(refusal(replaced(kSmallest, kSix, "# source_centroid 0 0 0\n# source_centroid 0 0 0\n" + kSix)),
+              HasSubstr("line 4: found '# source_centroid 0 0 0' a second time"));
+}
+
 }  // namespace
 }  // namespace corral

@@ -132,6 +132,13 @@ TEST(OffFile, NamesTheLineOfAWrongHeader) {
     EXPECT_THAT(off_refusal(replaced(kSquareOff, "4 2 5", counts)), HasSubstr("line 2: ")) << counts;
 }
 
+TEST(OffFile, AFaceHasThreeCorners) {
+  for (const char* face : {"0", "1 0", "2 0 1"})
+    EXPECT_THAT(off_refusal("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + std::string(face) + "\n"),
+                HasSubstr("line 6: the size of a face is '"))
+        << face;
+}
+
 TEST(OffFile, AHeaderThatPromisesMoreFailsAtOnce) {
   for (const char* counts : {"5 2 0", "4 3 0", "2000000000 2 0", "4 2000000000 0", "2147483647 2147483647 0"})
     EXPECT_NE(off_refusal(replaced(kSquareOff, "4 2 5", counts)), "") << counts;

@@ -93,7 +93,7 @@ inline std::string intricate_ply(const std::string& format) {
       "element vertex 4\nproperty uchar red\nproperty double z\nproperty list ushort float weights\n"
       "property float x\nproperty int8 quality\nproperty short y\n"
       "element strip 1\nproperty list int int16 strips\n"
-      "element face 3\nproperty uint32 flags\nproperty list uint ushort vertex_index\nproperty float32 area\n"
+      "element face 2\nproperty uint32 flags\nproperty list uint ushort vertex_index\nproperty float32 area\n"
       "element edge 1\nproperty int vertex1\nproperty uint vertex2\n",
       {{{'d', 35.5}, {'B', 2}, {'h', -7}, {'h', 300}},
        {{'d', 50}, {'B', 0}},
@@ -104,7 +104,6 @@ inline std::string intricate_ply(const std::string& format) {
        {{'i', 3}, {'h', 0}, {'h', 1}, {'h', -1}},
        {{'I', 4294967295.0}, {'I', 4}, {'H', 0}, {'H', 1}, {'H', 2}, {'H', 3}, {'f', 1}},
        {{'I', 0}, {'I', 3}, {'H', 3}, {'H', 1}, {'H', 0}, {'f', 2}},
-       {{'I', 0}, {'I', 0}, {'f', 2}},
        {{'i', -1}, {'I', 4000000000.0}}});
 }
 

@@ -86,7 +86,7 @@ TEST_P(Ply, FacesMayComeBeforeVertices) {
   };
   EXPECT_EQ(parse_ply(kPath, file(2)).triangles, triangles_of({{0, 2, 1}}));
   EXPECT_THAT(refusal(file(3)), HasSubstr("a corner is vertex 3, expected 0 .. 2"));
-  EXPECT_THAT(refusal(file(-1)), HasSubstr("a corner is below 0"));
+  EXPECT_THAT(refusal(file(-1)), HasSubstr("a corner is -1, expected a vertex"));
 }
 
 TEST_P(Ply, ReadsEveryTypeExactly) {
@@ -137,7 +137,7 @@ TEST_P(Ply, AHeaderThatPromisesMoreFailsAtOnce) {
     EXPECT_NE(refusal(replaced(intricate_ply(format()), "camera 2", "camera " + std::string(count))), "") << count;
   }
   EXPECT_THAT(refusal(replaced(square_ply(format()), "vertex 4", "vertex 2000000000")),
-              AllOf(HasSubstr("promises 2000000000 of element vertex"), HasSubstr("bytes follow")));
+              AllOf(HasSubstr("promises 2000000000 of element 'vertex'"), HasSubstr("bytes follow")));
 }
 
 TEST_P(Ply, ListsThatLieAreErrors) {
@@ -152,6 +152,27 @@ TEST_P(Ply, ListsThatLieAreErrors) {
   EXPECT_THAT(refusal(file("int", {'i', -1})), HasSubstr("a list of -1 values"));
   EXPECT_THAT(refusal(file("int", {'i', 2147483647.0})), HasSubstr("a list of 2147483647 values"));
   EXPECT_THAT(refusal(file("uint", {'I', 4294967295.0})), HasSubstr("a list of 4294967295 values"));
+}
+
+TEST_P(Ply, AFaceHasThreeCorners) {
+  for (const double size : {0, 1, 2}) {
+    PlyRow face = {{'B', size}};
+    for (double corner = 0; corner < size; ++corner) face.push_back({'i', corner});
+    EXPECT_THAT(refusal(ply_file(format(), kVertex + kFace, with_rows(three_vertices(), {face}))),
+                HasSubstr("a face of " + std::to_string(static_cast<int>(size)) + " corners"));
+  }
+}
+
+TEST_P(Ply, WhatIsNoCoordinateMayBeNan) {
+  const std::string header = "comment first\n" + kVertex + "property float nx\n";
+  std::vector<PlyRow> rows = three_vertices();
+  for (PlyRow& row : rows) row.push_back({'f', kNan});
+  EXPECT_EQ(parse_ply(kPath, ply_file(format(), header, rows)).vertices.rows(), 3);
+}
+
+TEST_P(Ply, NothingStandsTwice) {
+  EXPECT_THAT(refusal(ply_file(format(), kVertex + "property float x\n", {})), HasSubstr("property 'x' stands twice"));
+  EXPECT_THAT(refusal(ply_file(format(), kVertex + kVertex, {})), HasSubstr("element 'vertex' stands twice"));
 }
 
 TEST_P(Ply, CoordinatesAreFinite) {
@@ -225,7 +246,7 @@ TEST(PlyText, RowsHoldWhatTheHeaderSays) {
   EXPECT_THAT(refusal(header + "1 2 3 4\n4 5 6\n"), HasSubstr("line 9: found 4 values, expected 3"));
   EXPECT_THAT(refusal(header + "1 2 x\n4 5 6\n"), HasSubstr("line 9: found 'x', expected a number"));
   EXPECT_THAT(refusal(header + "1 2 1e999\n4 5 6\n"), HasSubstr("line 9: found '1e999'"));
-  EXPECT_THAT(refusal(header + "1 2 3\n"), HasSubstr("line 10: the file ends here, expected vertex 2 of 3"));
+  EXPECT_THAT(refusal(header + "1 2 3\n"), HasSubstr("line 10: the file ends here, expected element 'vertex' 2 of 3"));
 }
 
 }  // namespace

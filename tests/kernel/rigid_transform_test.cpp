@@ -209,5 +209,13 @@ TEST(TriangleArea, IsHalfBaseTimesHeight) {
   EXPECT_EQ(triangle_area({1, 2, 3}, {1, 2, 3}, {5, 5, 5}), 0);
 }
 
+TEST(FitRigidTransform, ARowThatIsNotThereIsAnError) {
+  CorrespondenceSet matches;
+  matches.source_points = matches.target_points = Points::Random(4, 3);
+  EXPECT_TRUE(fit_rigid_transform(matches, {0, 1, 2}).has_value());
+  EXPECT_THROW(fit_rigid_transform(matches, {0, 1, 4}), InvalidInput);
+  EXPECT_THROW(fit_rigid_transform(matches, {-1, 1, 2}), InvalidInput);
+}
+
 }  // namespace
 }  // namespace corral
