@@ -48,7 +48,7 @@ struct PointIndex::Tree {
 
   explicit Tree(const Points& input)
       : points(copy(input)),
-        map(CGAL::make_property_map(std::as_const(points))),
+        map(CGAL::make_property_map(std::as_const(points).data())),
         distance(map),
         tree(Search::Tree::Splitter(), Traits(map)) {
     if (points.empty()) return;  // a tree over nothing cannot be built, and is never asked

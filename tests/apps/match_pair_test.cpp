@@ -10,7 +10,7 @@
 
 #include "kernel/error.h"
 #include "kernel/surface/resolution.h"
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -15,8 +15,8 @@
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/synthetic.h"
-#include "support/meshes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/meshes.h"
 
 namespace corral::testing {
 

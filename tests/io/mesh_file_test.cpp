@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "support/meshes.h"
 #include "tests/io/scratch.h"
+#include "tests/support/meshes.h"
 
 namespace corral {
 namespace {

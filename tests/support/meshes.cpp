@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 
 #include <cmath>
 #include <map>

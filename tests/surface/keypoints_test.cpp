@@ -10,8 +10,8 @@
 #include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
-#include "support/meshes.h"
-#include "support/reference_surface.h"
+#include "tests/support/meshes.h"
+#include "tests/support/reference_surface.h"
 
 namespace corral {
 namespace {

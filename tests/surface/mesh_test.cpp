@@ -15,7 +15,7 @@
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
 #include "kernel/surface/topology.h"
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "kernel/random.h"
-#include "support/reference_surface.h"
+#include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

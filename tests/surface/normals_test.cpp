@@ -5,8 +5,8 @@
 
 #include "kernel/error.h"
 #include "kernel/surface/perturbation.h"
-#include "support/meshes.h"
-#include "support/reference_surface.h"
+#include "tests/support/meshes.h"
+#include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

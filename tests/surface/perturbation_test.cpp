@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "kernel/error.h"
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 
 namespace corral {
 namespace {

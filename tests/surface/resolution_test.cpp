@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "kernel/error.h"
-#include "support/meshes.h"
-#include "support/reference_surface.h"
+#include "tests/support/meshes.h"
+#include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

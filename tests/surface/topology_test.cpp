@@ -5,7 +5,7 @@
 
 #include "kernel/random.h"
 #include "kernel/surface/resolution.h"
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/random.h"
-#include "support/meshes.h"
+#include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 
 namespace corral {
