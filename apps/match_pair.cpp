@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/match_pair.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -16,6 +17,9 @@
 namespace corral {
 namespace {
 
+/// Resolutions that differ by more have no meaningful mean: metres and millimetres, most likely.
+constexpr double kLargestRatio = 20;
+
 /// A positive length, if the rule is one.
 std::optional<double> as_length(const std::string& rule) {
   const auto value = parse_double(rule);
@@ -25,7 +29,14 @@ std::optional<double> as_length(const std::string& rule) {
 double pair_resolution(const std::string& rule, double source, double target) {
   if (rule == "source") return source;
   if (rule == "target") return target;
-  if (rule == "mean") return (source + target) / 2;
+  if (rule == "mean") {
+    const double ratio = std::max(source, target) / std::min(source, target);
+    if (!(ratio <= kLargestRatio))
+      throw InvalidInput("match", "resolution",
+                         to_text(source) + " on the source and " + to_text(target) + " on the target",
+                         "both in the same unit, or --resolution with the one to use");
+    return (source + target) / 2;
+  }
   return as_length(rule).value();
 }
 
@@ -66,8 +77,7 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
     const double scale = report.resolution / side.resolution;  // from pr of the pair to the side's own
     if (side.candidates == 0)
       hints.push_back("no keypoint on the " + name + ": " +
-                      radius_hint("keypoint", settings.keypoint_radius_pr * scale, 3) +
-                      "a flat surface has none");
+                      radius_hint("keypoint", settings.keypoint_radius_pr * scale, 3) + "a flat surface has none");
     else
       hints.push_back("no keypoint of the " + name +
                       " could be described: " + radius_hint("support", settings.support_radius_pr * scale, 15) +

@@ -32,7 +32,7 @@ inline PairDistances pair_distances(const CorrespondenceSet& matches, int i, int
 /// Source    [yang2017evaluation] eq. (2), [lowe2004distinctive]. Needs both feature distances.
 std::vector<double> ratio_scores(const CorrespondenceSet& matches);
 
-/// Lowe's test on one match: d2 > 0 and d1 <= maximum_ratio * d2, that is 1 - d1/d2 >= 1 - maximum_ratio.
+/// Lowe's test on one match: d2 > 0 and d1/d2 <= maximum_ratio (rounding makes 1 - d1/d2 >= 1 - maximum_ratio another test).
 inline bool passes_ratio_test(double d1, double d2, double maximum_ratio) { return d2 > 0 && d1 / d2 <= maximum_ratio; }
 
 /// The rigid motion that one match alone proposes by its two frames: R = L'^T L, t = p' - R p.

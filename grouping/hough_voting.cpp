@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace corral {
@@ -81,14 +82,21 @@ Box bounding_box(const std::vector<Vote>& votes) {
   return box;
 }
 
-Indices select_in_box(const std::vector<Vote>& votes, int bins) {
-  const auto [low, high] = bounding_box(votes);
-  const Eigen::Array3d width = (high - low) / bins;
+/// Extent below which an axis of the box holds nothing but rounding: it is not divided.
+double rounding_extent(const Box& box, double resolution) {
+  const double largest = std::max(box.low.abs().maxCoeff(), box.high.abs().maxCoeff());
+  return std::max(1e-6 * resolution, 64 * std::numeric_limits<double>::epsilon() * largest);
+}
+
+Indices select_in_box(const std::vector<Vote>& votes, int bins, double resolution) {
+  const Box box = bounding_box(votes);
+  const Eigen::Array3d low = box.low, extent = box.high - box.low, width = extent / bins;
+  const double indivisible = rounding_extent(box, resolution);
   std::vector<Share> shares;
   for (const Vote& vote : votes) {
     Cell cell = Cell::Zero();
     for (int axis = 0; axis < 3; ++axis)
-      if (width(axis) > 0)
+      if (extent(axis) > indivisible)
         cell(axis) = std::min(std::floor((vote.position(axis) - low(axis)) / width(axis)), bins - 1.0);
     shares.push_back({cell, vote.row, 1});
   }
@@ -121,7 +129,7 @@ GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const Hou
   const std::vector<Vote> votes = cast_votes(matches);
   GroupingResult result;
   if (votes.empty()) return result;
-  result.selected = options.cells == HoughCells::Box ? select_in_box(votes, options.bins)
+  result.selected = options.cells == HoughCells::Box ? select_in_box(votes, options.bins, matches.resolution)
                                                      : select_in_cubes(votes, kCubePr * matches.resolution);
   return result;
 }

@@ -22,7 +22,7 @@ struct HoughVotingOptions {
   template <class Self, class Visitor>
   static void visit_fields(Self& self, Visitor&& visit) {
     visit(OptionField{"bins", "", "", "cells per axis of the box of votes (box only)", within(1, 1000)}, self.bins);
-    visit(OptionField{"cells", "", "box", "15 bins per axis (box) or interpolated cubes of 5 pr (pr5)"}, self.cells);
+    visit(OptionField{"cells", "", "", "15 bins per axis (box) or interpolated cubes of 5 pr (pr5)"}, self.cells);
   }
 };
 
@@ -39,7 +39,8 @@ struct HoughVotingOptions {
 /// Cost      O(M log M) time, O(M) memory, whatever the extent of the votes. Deterministic.
 /// Throws    InvalidInput: option out of range, column absent, ragged or non-finite.
 /// Departs   15 bins per axis after the authors' program (the paper gives no size). Ties go to the lowest cell in the order
-///           of x, then y, then z. An axis without extent has one bin. A match with an invalid frame on either side has no
+///           of x, then y, then z. An axis whose extent is rounding (at most 1e-6 pr, or 64 ulps of the largest coordinate)
+///           has one bin. A match with an invalid frame on either side has no
 ///           vote and is not selected.
 GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options = {});
 

@@ -42,7 +42,7 @@ inline OptionRange above_up_to(double low, double high) { return {low, high, tru
 struct OptionField {
   const char* name;
   const char* unit;     ///< "pr", "" for a pure number or a choice
-  const char* paper;    ///< value in [yang2017evaluation] Table 1, "" where it has none
+  const char* paper;    ///< value in [yang2017evaluation] Table 1, or the form it prints; "" where it has none
   const char* meaning;  ///< one line
   OptionRange range = {};
 };

@@ -51,7 +51,7 @@ const Grouper& find_grouper(const std::string& name) {
     if (grouper.name == name) return grouper;
     known += (known.empty() ? "" : "|") + grouper.name;
   }
-  throw InvalidInput("find_grouper", "method", "'" + name + "'", known);
+  throw InvalidInput("grouping", "method", "'" + name + "'", known);
 }
 
 }  // namespace corral

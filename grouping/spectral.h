@@ -35,8 +35,7 @@ struct SpectralOptions {
 /// Returns   selected only.
 /// Cost      O(M^2) time for each accepted match and matrix product, O(M^2) memory. Deterministic.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
-/// Departs   The eigenvector is the converged one of definition (see principal_eigenvector.h), not that of a fixed number of
-///           rounds. Entries within 1e-9 of the maximum are ties: the lowest row. Conflict means incompatible (the paper
+/// Departs   The eigenvector is the converged one (see principal_eigenvector.h), not that of a fixed number of rounds. Entries within 1e-9 of the maximum are ties: the lowest row. Conflict means incompatible (the paper
 ///           leaves it open). Two equally heavy parts: the one with the lowest row first. No compatible pair: nothing.
 GroupingResult group_by_spectral(const CorrespondenceSet& matches, const SpectralOptions& options = {});
 

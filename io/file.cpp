@@ -83,6 +83,11 @@ class StagedFile {
   StagedFile& operator=(const StagedFile&) = delete;
   ~StagedFile() { discard(); }
 
+  const std::string& path() const { return file_.path; }
+  bool takes_the_place_of(const StagedFile& other) const {
+    return !is_device_ && !other.is_device_ && fs::weakly_canonical(place_) == fs::weakly_canonical(other.place_);
+  }
+
   void commit() {
     if (is_device_) {
       const Descriptor descriptor{::open(file_.path.c_str(), O_WRONLY | O_CLOEXEC)};
@@ -130,6 +135,10 @@ std::string read_file(const std::string& path) {
 void write_files(const std::vector<FileContent>& files) {
   std::vector<std::unique_ptr<StagedFile>> staged;
   for (const FileContent& file : files) staged.push_back(std::make_unique<StagedFile>(file));
+  for (const auto& file : staged)
+    for (const auto& other : staged)
+      if (file != other && file->takes_the_place_of(*other))
+        throw IoError(other->path(), "", "is to hold two outputs at once, expected a name for each");
   for (const auto& file : staged) file->commit();
 }
 
@@ -144,13 +153,6 @@ void remove_file(const std::string& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error) && !fs::remove(path, error))
     throw IoError(path, "", "cannot be removed (" + error.message() + ")");
-}
-
-void check_folder(const std::string& path) {
-  std::error_code error;
-  for (fs::path place = path; !place.empty() && place != place.parent_path(); place = place.parent_path())
-    if (fs::exists(place, error) && !fs::is_directory(place, error))
-      throw IoError(path, "", "cannot be created as a folder (" + place.string() + " is a file)");
 }
 
 void make_folder(const std::string& path) {

@@ -17,7 +17,8 @@ struct FileContent {
   std::string path, content;
 };
 
-/// The same for several files: none takes its place before all are written.
+/// The same for several files: all are written beside their places before the first takes its own. Throws IoError if two
+/// have the same place.
 void write_files(const std::vector<FileContent>& files);
 
 /// Throws what write_file would throw before long work is done for nothing. Changes nothing.
@@ -25,9 +26,6 @@ void check_writable(const std::string& path);
 
 /// Takes away a file that an earlier run left, if it is there. Pipes and devices stay. Throws IoError.
 void remove_file(const std::string& path);
-
-/// Throws IoError if make_folder cannot work because a file is in the way. Changes nothing.
-void check_folder(const std::string& path);
 
 /// Creates a folder and its parents if they are not there. Throws IoError if that is not possible.
 void make_folder(const std::string& path);

@@ -10,8 +10,9 @@ namespace {
 
 /// Keywords that say nothing about vertices and faces.
 bool is_ignored(std::string_view keyword) {
-  constexpr std::array<std::string_view, 11> kIgnored = {"vn",     "vt",     "vp", "g", "o", "s",
-                                                         "usemtl", "mtllib", "l",  "p", "mg"};
+  constexpr std::array<std::string_view, 19> kIgnored = {
+      "vn", "vt",     "vp",     "g",   "o",     "s",        "usemtl",   "mtllib",     "l",        "p",
+      "mg", "usemap", "maplib", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj"};
   for (const std::string_view ignored : kIgnored)
     if (keyword == ignored) return true;
   return false;

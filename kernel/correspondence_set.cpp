@@ -47,8 +47,7 @@ void CorrespondenceSet::validate() const {
   check_length("target_keypoints", target_keypoints.size(), rows, true);
   check_length("feature_distance", static_cast<std::size_t>(feature_distance.size()), rows, true);
   check_length("second_feature_distance", static_cast<std::size_t>(second_feature_distance.size()), rows, true);
-  if (!(resolution > 0) || !std::isfinite(resolution))
-    throw InvalidInput("table of matches", "resolution", resolution, "a finite length above zero");
+  require_positive("table of matches", "resolution", resolution);
   check_finite("source_points", source_points);
   check_finite("target_points", target_points);
   check_finite("feature_distance", feature_distance);

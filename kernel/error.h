@@ -14,6 +14,9 @@ class InvalidInput : public std::invalid_argument {
   InvalidInput(const std::string& who, const std::string& field, double value, const std::string& accepted);
 };
 
+/// Throws InvalidInput unless the value is finite and above zero.
+void require_positive(const std::string& who, const std::string& field, double value);
+
 /// A file that cannot be read or written: names the file, the place in it (may be empty) and what was expected there.
 class IoError : public std::runtime_error {
  public:

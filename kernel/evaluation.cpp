@@ -44,7 +44,7 @@ GroupingScore score_grouping(const std::vector<bool>& labels, const Indices& sel
   }
   score.precision = ratio(score.correct, score.selected);
   score.recall = ratio(score.correct, score.true_matches);
-  score.f1 = ratio(2.0 * score.correct, score.selected + score.true_matches);
+  if (score.true_matches > 0) score.f1 = ratio(2.0 * score.correct, score.selected + score.true_matches);
   return score;
 }
 

@@ -24,7 +24,7 @@ struct GroupingScore {
   int true_matches = 0;             ///< right, selected or not
   std::optional<double> precision;  ///< correct / selected
   std::optional<double> recall;     ///< correct / true_matches
-  std::optional<double> f1;         ///< 2 correct / (selected + true_matches), the harmonic mean of the two
+  std::optional<double> f1;         ///< 2 correct / (selected + true_matches), their harmonic mean; absent as recall is
 };
 
 /// Throws    InvalidInput if a selected row is out of range or the rows do not ascend strictly.

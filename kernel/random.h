@@ -9,7 +9,8 @@
 namespace corral {
 
 /// A reproducible stream of random numbers. The standard fixes the engine but not its distributions, so the draws are our
-/// own: the same seed gives the same numbers with every compiler and library.
+/// own: the same seed gives the same whole numbers and uniforms with every compiler and library, and the same normals,
+/// directions and rotations up to the last bits of its logarithm and cosine.
 class RandomStream {
  public:
   explicit RandomStream(std::uint64_t seed);

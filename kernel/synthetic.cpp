@@ -37,6 +37,19 @@ Indices choose_rows(RandomStream& random, int rows, int count) {
   return all;
 }
 
+void resize_columns(CorrespondenceSet& table, int rows) {
+  const auto count = static_cast<std::size_t>(rows);
+  table.source_points.resize(rows, 3);
+  table.target_points.resize(rows, 3);
+  table.source_frames.resize(count);
+  table.target_frames.resize(count);
+  table.source_keypoints.resize(count);
+  table.target_keypoints.resize(count);
+  table.feature_distance.resize(rows);
+  table.second_feature_distance.resize(rows);
+  table.source_centroid = Eigen::Vector3d::Zero();
+}
+
 }  // namespace
 
 SyntheticProblem make_synthetic_problem(const SyntheticOptions& options) {
@@ -51,7 +64,6 @@ SyntheticProblem make_synthetic_problem(const SyntheticOptions& options) {
   RandomStream random(options.seed);
   const double pr = options.resolution;
   const double side = options.extent_pr * pr;
-  const auto count = static_cast<std::size_t>(options.matches);
 
   SyntheticProblem problem;
   problem.truth.rotation = random.rotation();
@@ -61,16 +73,7 @@ SyntheticProblem make_synthetic_problem(const SyntheticOptions& options) {
 
   CorrespondenceSet& table = problem.matches;
   table.resolution = pr;
-  table.source_points.resize(options.matches, 3);
-  table.target_points.resize(options.matches, 3);
-  table.source_frames.resize(count);
-  table.target_frames.resize(count);
-  table.source_keypoints.resize(count);
-  table.target_keypoints.resize(count);
-  table.feature_distance.resize(options.matches);
-  table.second_feature_distance.resize(options.matches);
-  table.source_centroid = Eigen::Vector3d::Zero();
-
+  resize_columns(table, options.matches);
   auto next_inlier = problem.inliers.begin();
   for (int row = 0; row < options.matches; ++row) {
     const auto i = static_cast<std::size_t>(row);

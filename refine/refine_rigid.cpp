@@ -5,6 +5,7 @@
 #include <ceres/rotation.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/error.h"
@@ -113,8 +114,7 @@ ceres::Solver::Summary solve(const CentredRows& rows, const RefineOptions& optio
 
 void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOptions& options) {
   matches.validate();
-  if (!(options.loss_scale_pr > 0) || !std::isfinite(options.loss_scale_pr))
-    throw InvalidInput("refine_rigid", "loss_scale_pr", options.loss_scale_pr, "a finite length above zero");
+  require_positive("refine_rigid", "loss_scale_pr", options.loss_scale_pr);
   if (options.maximum_iterations < 1)
     throw InvalidInput("refine_rigid", "maximum_iterations", options.maximum_iterations, "at least 1");
   check_rows(matches, rows, "refine_rigid");
@@ -152,7 +152,7 @@ RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, 
 
   RigidTransform pose = *start;
   const ceres::Solver::Summary summary = solve(centred, options, pose);
-  refined.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  refined.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   refined.converged = summary.termination_type == ceres::CONVERGENCE;
   refined.final_rms_pr = rms(pose, centred);
   const PoseCovariance covariance =

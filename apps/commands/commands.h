@@ -39,6 +39,9 @@ void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
 void check_threshold(double threshold_pr);        ///< throws UsageError
 
+/// The names of all methods with something between them.
+std::string method_list(const std::string& separator);
+
 /// The named method with "key=value" texts applied. Throws UsageError.
 ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings);
 

@@ -2,6 +2,7 @@
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
 #include "apps/report.h"
+#include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "kernel/error.h"
@@ -19,6 +20,7 @@ struct Settings {
 int group(const Settings& settings) {
   const ConfiguredGrouper grouper = configure_grouper(settings.method, settings.set);
   if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
+  if (!settings.output.empty()) check_writable(settings.output);
   const CorrespondenceSet matches = read_matches(settings.matches);
   const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
   if (!settings.json || !settings.output.empty())
@@ -34,6 +36,12 @@ int group(const Settings& settings) {
 }
 
 }  // namespace
+
+std::string method_list(const std::string& separator) {
+  std::string names;
+  for (const Grouper& grouper : groupers()) names += (names.empty() ? "" : separator) + grouper.name;
+  return names;
+}
 
 ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings) {
   OptionOverrides overrides;
@@ -54,7 +62,7 @@ void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper on a table of matches");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("-m,--method", settings->method, "ss, nnsr, ransac, st, gc, hough or si")->required();
+  command->add_option("-m,--method", settings->method, method_list("|"))->required();
   command->add_option("--set", settings->set, "An option of the method as key=value; 'corral groupers' lists them")
       ->type_name("KEY=VALUE")
       ->expected(1)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral info: what a mesh is, before anything is done with it.
+#include <cmath>
+
 #include "apps/commands/commands.h"
 #include "apps/report.h"
 #include "io/mesh_file.h"
@@ -30,7 +32,8 @@ void add_warnings(MeshInfo& info) {
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area");
   warn(info.topology.non_manifold_faces, "non-manifold faces");
-  if (!info.resolution) info.warnings.push_back("fewer than 2 distinct vertices: no resolution");
+  if (!info.resolution)
+    info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");
 }
 
 MeshInfo inspect(const std::string& path) {
@@ -40,7 +43,8 @@ MeshInfo inspect(const std::string& path) {
   info.vertices = static_cast<int>(mesh.vertices.rows());
   info.faces = static_cast<int>(mesh.triangles.rows());
   info.topology = inspect_topology(mesh);
-  if (info.vertices - info.topology.duplicate_vertices >= 2) info.resolution = point_resolution(mesh.vertices);
+  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  if (diagonal > 0 && std::isfinite(diagonal)) info.resolution = point_resolution(mesh.vertices);
   if (info.vertices > 0) info.extent = mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff();
   add_warnings(info);
   return info;

@@ -18,6 +18,7 @@ struct Settings {
   std::string mesh, output, truth;
   double noise_pr = 0;
   std::uint64_t seed = 1;
+  bool json = false;
 };
 
 int perturb(const Settings& settings) {
@@ -31,6 +32,11 @@ int perturb(const Settings& settings) {
   std::vector<FileContent> files{{settings.output, ply_text(copy)}};
   if (!settings.truth.empty()) files.push_back({settings.truth, transform_text(motion)});
   write_files(files);
+  if (settings.json)
+    put("", Json{{"seed", settings.seed},
+                 {"noise_pr", settings.noise_pr},
+                 {"deviation", deviation},
+                 {"copy_from_mesh", to_json(motion)}});
   return kOk;
 }
 
@@ -46,6 +52,7 @@ void add_perturb(CLI::App& app, Action& action) {
   command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise on every coordinate")
       ->capture_default_str();
   command->add_option("--seed", settings->seed, "Seed of motion and noise")->capture_default_str();
+  command->add_flag("--json", settings->json, "Motion and deviation as JSON on standard output");
   command->footer(
       "Example:\n  corral perturb bunny.off --noise-pr 0.25 -o copy.ply --truth truth.txt\n"
       "  corral run bunny.off copy.ply --truth truth.txt --resolution source");

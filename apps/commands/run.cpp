@@ -29,19 +29,23 @@ struct Settings {
 /// "all" or names between commas, each once.
 std::vector<std::string> method_names(const std::string& text) {
   std::vector<std::string> names;
-  if (text == "all")
+  if (text == "all") {
     for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
-  std::istringstream stream(text == "all" ? "" : text);
+    return names;
+  }
+  std::istringstream stream(text + ",");
   for (std::string name; std::getline(stream, name, ',');) {
+    if (name.empty()) throw UsageError("--methods " + text + ": expected all, or names such as ss,gc");
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw UsageError("--methods: " + name + " stands twice");
     names.push_back(name);
   }
-  if (names.empty()) throw UsageError("--methods: expected all, or names such as ss,gc");
   return names;
 }
 
 struct PairRun {
+  std::vector<std::string> methods;
+  std::vector<ConfiguredGrouper> groupers;
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
@@ -54,15 +58,25 @@ struct PairRun {
 };
 
 Json to_json(const PairRun& run, const Settings& settings) {
-  Json methods = Json::array();
-  for (const MethodRecord& record : run.records) methods.push_back(corral::to_json(record));
+  Json methods = Json::array(), options = Json::object();
+  for (std::size_t i = 0; i < run.records.size(); ++i) {
+    methods.push_back(corral::to_json(run.records[i]));
+    options[run.methods[i]] = corral::to_json(run.groupers[i].options);
+  }
   return {{"source", settings.source},
           {"target", settings.target},
           {"resolution", run.pair.report.resolution},
           {"matches", run.pair.matches.size()},
           {"true_matches", json_or_null(run.true_matches())},
-          {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
-          {"methods", methods}};
+          {"methods", methods},
+          {"details",
+           {{"resolution_rule", settings.match.resolution},
+            {"keypoint_radius_pr", settings.match.keypoint_radius_pr},
+            {"support_radius_pr", settings.match.support_radius_pr},
+            {"threshold_pr", settings.threshold_pr},
+            {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
+            {"repeat", settings.repeat},
+            {"options", options}}}};
 }
 
 /// Every intermediate file of the run, all or none; what an earlier run left of other methods goes.
@@ -91,23 +105,27 @@ void write_folder(const PairRun& run, const Settings& settings) {
     }
 }
 
-PairRun evaluate(const Settings& settings, const std::vector<std::string>& methods) {
-  if (!settings.output.empty()) check_folder(settings.output);
-  std::vector<ConfiguredGrouper> configured;
-  for (const std::string& name : methods) configured.push_back(configure_grouper(name, {}));
+PairRun evaluate(const Settings& settings) {
   PairRun run;
+  run.methods = method_names(settings.methods);
+  for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, {}));
   if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
-  Progress progress(kMatchStages + 1 + static_cast<double>(methods.size()));
+  if (!settings.output.empty()) {  // better now than after all the work
+    make_folder(settings.output);
+    check_writable(settings.output + "/run.json");
+  }
+  Progress progress(kMatchStages + 1 + static_cast<double>(run.methods.size()));
   run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   if (run.truth) {
     progress.begin("overlap");
     run.truth->overlap = overlap_points(source.vertices, PointIndex(target.vertices), run.truth->target_from_source,
                                         kOverlapPr * run.pair.report.resolution);
   }
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    progress.begin(methods[i]);
-    run.records.push_back(evaluate_method(methods[i], configured[i], run.pair.matches, run.truth, settings.repeat));
+  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+    progress.begin(run.methods[i]);
+    run.records.push_back(
+        evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat));
   }
   return run;
 }
@@ -126,7 +144,7 @@ int run_pair(const Settings& settings) {
   check_usage(settings.match);
   check_threshold(settings.threshold_pr);
   if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
-  const PairRun run = evaluate(settings, method_names(settings.methods));
+  const PairRun run = evaluate(settings);
   if (settings.verbose)
     say(stage_report(run.pair.report));
   else
@@ -150,7 +168,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors")
       ->type_name("FILE");
-  command->add_option("--methods", settings->methods, "all, or names between commas: ss,nnsr,ransac,st,gc,hough,si")
+  command->add_option("--methods", settings->methods, "all, or names between commas: " + method_list(","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")

@@ -35,8 +35,8 @@ struct Share {
 /// `position`: coordinate in which bin b is centred at b. `count` bins, `circular` or ending at both sides.
 Share share_of(double position, int count, bool circular) {
   const int nearest = static_cast<int>(std::floor(position + 0.5));
-  const double delta = position - nearest;
   const int bin = circular ? (nearest + count) % count : std::clamp(nearest, 0, count - 1);
+  const double delta = position - (circular ? nearest : bin);
   int beside = delta > 0 ? bin + 1 : bin - 1;
   if (circular)
     beside = (beside + count) % count;
@@ -68,11 +68,6 @@ void vote(Eigen::VectorXd& histogram, const Eigen::Vector3d& local, double dista
   own += 1 - a.away;
   histogram(flat_bin(a.beside, e.bin, s.bin, c.bin)) += a.away;
   histogram(flat_bin(a.bin, e.bin, s.bin, c.bin)) += own;
-}
-
-void check_length(const char* field, double value) {
-  if (!(value > 0) || !std::isfinite(value))
-    throw InvalidInput("describe_shot", field, value, "a finite length above zero");
 }
 
 }  // namespace
@@ -126,8 +121,8 @@ std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Poin
 
 Descriptors describe_shot(const Mesh& mesh, const Points& normals, const PointIndex& index, const Indices& keypoints,
                           double resolution, double radius_pr) {
-  check_length("resolution", resolution);
-  check_length("radius_pr", radius_pr);
+  require_positive("describe_shot", "resolution", resolution);
+  require_positive("describe_shot", "radius_pr", radius_pr);
   const double radius = radius_pr * resolution;
   Descriptors descriptors;
   std::vector<Eigen::VectorXd> columns;

@@ -3,19 +3,35 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "kernel/error.h"
+#include "kernel/number_text.h"
 #include "kernel/surface/normals.h"
 
 namespace corral {
 namespace {
 
 constexpr double kSmallestResponse = 1e-9;
+constexpr std::size_t kLargestMeanNeighborhood = 500;
+constexpr std::size_t kAlwaysAccepted = 20000000;  // neighbours in all, 320 MB
 
-void check_length(const char* field, double value) {
-  if (!(value > 0) || !std::isfinite(value))
-    throw InvalidInput("detect_harris", field, value, "a finite length above zero");
+/// The vertices within `radius` of each vertex. Refuses a radius that holds so many that it cannot be meant.
+std::vector<std::vector<Neighbor>> collect_neighborhoods(const Points& vertices, const PointIndex& index,
+                                                         double radius) {
+  std::vector<std::vector<Neighbor>> neighborhoods;
+  std::size_t total = 0;
+  const auto most = std::max(kAlwaysAccepted, kLargestMeanNeighborhood * static_cast<std::size_t>(vertices.rows()));
+  for (Eigen::Index row = 0; row < vertices.rows(); ++row) {
+    neighborhoods.push_back(index.within(vertices.row(row).transpose(), radius));
+    total += neighborhoods.back().size();
+    if (total > most)
+      throw InvalidInput("detect_harris", "keypoint radius",
+                         to_text(radius) + " mesh units, which holds over " + std::to_string(kLargestMeanNeighborhood) +
+                             " vertices on average",
+                         "a radius that holds about 30 (is the resolution in the unit of this mesh, or do many "
+                         "vertices share one place?)");
+  }
+  return neighborhoods;
 }
 
 bool is_maximum(const Eigen::VectorXd& response, int vertex, const std::vector<Neighbor>& neighborhood) {
@@ -48,14 +64,11 @@ Eigen::VectorXd harris_response(const Points& vertices, const std::vector<std::v
 }
 
 Keypoints detect_harris(const Mesh& mesh, const PointIndex& index, double resolution, const HarrisOptions& options) {
-  check_length("resolution", resolution);
-  check_length("radius_pr", options.radius_pr);
-  check_length("support_radius_pr", options.support_radius_pr);
+  require_positive("detect_harris", "resolution", resolution);
+  require_positive("detect_harris", "radius_pr", options.radius_pr);
+  require_positive("detect_harris", "support_radius_pr", options.support_radius_pr);
 
-  std::vector<std::vector<Neighbor>> neighborhoods(static_cast<std::size_t>(mesh.vertices.rows()));
-  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
-    neighborhoods[static_cast<std::size_t>(row)] =
-        index.within(mesh.vertices.row(row).transpose(), options.radius_pr * resolution);
+  const auto neighborhoods = collect_neighborhoods(mesh.vertices, index, options.radius_pr * resolution);
   const Eigen::VectorXd response = harris_response(mesh.vertices, neighborhoods);
 
   Keypoints keypoints;

@@ -29,9 +29,10 @@ struct Keypoints {
 /// Source    [sipiran2011harris] in the form of the point-cloud operator with Harris response that the program of
 ///           [yang2017evaluation] calls; since every n is a unit vector, its trace is 1 and the response is the determinant.
 /// Cost      O(V m) time and memory, m vertices within rho.
-/// Throws    InvalidInput if a radius is not finite and positive, or `resolution` is not.
+/// Throws    InvalidInput if a radius or `resolution` is not finite and positive, or if the radius holds over 500 vertices
+///           on average (and over 2e7 in all).
 /// Departs   The determinant is taken in double, without the +0.04 - 0.04 that leaves float noise on flat ground; ties go
-///           to the lower index (there, all of them stay).
+///           to the lower index (there, all of them stay). The keypoint itself does not count for its support.
 Keypoints detect_harris(const Mesh& mesh, const PointIndex& index, double resolution,
                         const HarrisOptions& options = {});
 

@@ -99,7 +99,7 @@ std::vector<Neighbor> PointIndex::nearest(const Eigen::Vector3d& query, int coun
     neighbors = within(query, std::sqrt(neighbors[wanted].squared_distance) * (1 + 1e-15));
     std::sort(neighbors.begin(), neighbors.end(), nearer);
   }
-  neighbors.resize(wanted);
+  if (neighbors.size() > wanted) neighbors.resize(wanted);
   return neighbors;
 }
 

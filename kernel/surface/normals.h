@@ -12,7 +12,7 @@ namespace corral {
 ///
 /// Source    [rusu2009thesis] section 4.3; k = 20 after the program of [yang2017evaluation].
 /// Departs   The authors turn every normal towards the origin, which on closed models flips neighbours against each other;
-///           with faces we take their side.
+///           with faces we take their side, on a noisy mesh that of its own faces.
 /// Throws    InvalidInput for k < 3.
 Points estimate_normals(const Mesh& mesh, const PointIndex& index, int k = 20);
 

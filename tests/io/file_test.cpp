@@ -240,13 +240,13 @@ TEST(CheckWritable, SaysWhatWritingWouldAndChangesNothing) {
   EXPECT_EQ(folder.names().size(), 1U);
 }
 
-TEST(CheckFolder, AFileInTheWayIsAnError) {
+TEST(WriteFiles, EachHasAPlaceOfItsOwn) {
   const ScratchFolder folder;
-  put_text(folder / "file", "x");
-  EXPECT_THROW(check_folder(folder / "file"), IoError);
-  EXPECT_THROW(check_folder(folder / "file/below"), IoError);
-  EXPECT_NO_THROW(check_folder(folder / "new/below"));
-  EXPECT_EQ(folder.names().size(), 1U);
+  EXPECT_THAT(io_error_of([&] {
+                write_files({{folder / "a", "1"}, {folder / "./a", "2"}});
+              }),
+              HasSubstr("two outputs at once"));
+  EXPECT_TRUE(folder.names().empty());
 }
 
 }  // namespace
