@@ -131,5 +131,13 @@ TEST(MatchPair, RefusesWhatIsNoSurface) {
   EXPECT_NE(refusal_of([&] { match_pair(Mesh(), good, {}); }), "");
 }
 
+TEST(MatchPair, MetresAndMillimetresHaveNoMean) {
+  const Mesh metres = testing::bumpy_sphere(3, 1);
+  Mesh millimetres = metres;
+  millimetres.vertices *= 1000;
+  EXPECT_THROW(match_pair(metres, millimetres, {}), InvalidInput);
+  EXPECT_NO_THROW(match_pair(metres, millimetres, {"source"}));
+}
+
 }  // namespace
 }  // namespace corral

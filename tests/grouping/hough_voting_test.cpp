@@ -167,5 +167,19 @@ TEST(HoughVoting, AbsentColumnsAreNamed) {
   EXPECT_THAT(refusal_of([&] { group_by_hough_voting(matches); }), HasSubstr("column source_frames"));
 }
 
+// All votes meet in one point; what is left of the extent is rounding.
+TEST(HoughVoting, AnExactCopyIsSelectedWhole) {
+  SyntheticOptions options;
+  options.inlier_ratio = 1;
+  options.noise_pr = options.frame_noise_deg = 0;
+  for (const double offset : {0.0, 1e7})
+    for (const double resolution : {1e-3, 1.0}) {
+      options.resolution = resolution;
+      SyntheticProblem problem = make_synthetic_problem(options);
+      problem.matches.target_points.array() += offset;
+      EXPECT_EQ(group_by_hough_voting(problem.matches).selected.size(), 500U) << offset << " " << resolution;
+    }
+}
+
 }  // namespace
 }  // namespace corral

@@ -295,5 +295,31 @@ TEST(DescribeShot, LengthsAreChecked) {
   }
 }
 
+/// The histogram of one neighbour under the identity frame, before its length is made one: divide by the entry of its bin.
+Eigen::VectorXd histogram_of(const Eigen::Vector3d& neighbor, double radius) {
+  Points vertex(1, 3), normal(1, 3);
+  vertex.row(0) = neighbor.transpose();
+  normal.row(0) << 0, 0, 1;  // cosine 1: the last cosine bin, without a share
+  return shot_histogram(vertex, normal, Eigen::Vector3d::Zero(), LocalReferenceFrame::Identity(),
+                        {{0, neighbor.squaredNorm()}}, radius)
+      .value();
+}
+
+int bin(int azimuth, int elevation, int shell) { return ((azimuth * 2 + elevation) * 2 + shell) * 11 + 10; }
+
+// Beyond the last centre of an axis that ends there is nobody to share with: half of that vote is lost.
+TEST(ShotHistogram, TheRimGivesNothingToTheInnerShell) {
+  const Eigen::VectorXd rim = histogram_of({2, 0, 0}, 2);
+  for (int azimuth = 0; azimuth < 8; ++azimuth)
+    for (int elevation = 0; elevation < 2; ++elevation)
+      EXPECT_EQ(rim(bin(azimuth, elevation, 0)), 0) << azimuth << " " << elevation;
+}
+
+TEST(ShotHistogram, StraightDownGivesNothingToTheUpperHalf) {
+  const Eigen::VectorXd down = histogram_of({0, 0, -1.5}, 2);
+  for (int azimuth = 0; azimuth < 8; ++azimuth)
+    for (int shell = 0; shell < 2; ++shell) EXPECT_EQ(down(bin(azimuth, 0, shell)), 0) << azimuth << " " << shell;
+}
+
 }  // namespace
 }  // namespace corral
