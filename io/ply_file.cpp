@@ -4,108 +4,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "io/line_reader.h"
 #include "io/mesh_file.h"
+#include "io/ply_header.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 namespace {
-
-struct Type {
-  std::string_view name, other_name;
-  std::size_t bytes;
-  char kind;  // i: signed, u: unsigned, f: floating point
-};
-constexpr std::array<Type, 8> kTypes = {{{"char", "int8", 1, 'i'},
-                                         {"uchar", "uint8", 1, 'u'},
-                                         {"short", "int16", 2, 'i'},
-                                         {"ushort", "uint16", 2, 'u'},
-                                         {"int", "int32", 4, 'i'},
-                                         {"uint", "uint32", 4, 'u'},
-                                         {"float", "float32", 4, 'f'},
-                                         {"double", "float64", 8, 'f'}}};
-
-struct Property {
-  std::string name;
-  const Type* type = nullptr;
-  const Type* count_type = nullptr;  // of a list
-};
-
-struct Element {
-  std::string name;
-  std::int64_t count = 0;
-  std::vector<Property> properties;
-
-  /// Place of a property among the others, -1 if there is none.
-  int find(std::string_view wanted) const {
-    for (std::size_t i = 0; i < properties.size(); ++i)
-      if (properties[i].name == wanted) return static_cast<int>(i);
-    return -1;
-  }
-};
-
-enum class Encoding { Ascii, Little, Big };
-
-struct Header {
-  Encoding encoding = Encoding::Ascii;
-  std::vector<Element> elements;
-};
-
-const Type* find_type(const LineReader& reader, std::string_view name) {
-  for (const Type& type : kTypes)
-    if (name == type.name || name == type.other_name) return &type;
-  reader.fail("found the type " + quoted(name) + ", expected char, uchar, short, ushort, int, uint, float or double");
-}
-
-Property parse_property(const LineReader& reader, const std::vector<std::string_view>& fields) {
-  if (fields.size() == 3) return {std::string(fields[2]), find_type(reader, fields[1]), nullptr};
-  if (fields.size() != 5 || fields[1] != "list")
-    reader.fail("found " + quoted(reader.line()) + ", expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
-  const Type* count_type = find_type(reader, fields[2]);
-  if (count_type->kind == 'f') reader.fail("the length of a list is " + quoted(fields[2]) + ", expected a whole type");
-  return {std::string(fields[4]), find_type(reader, fields[3]), count_type};
-}
-
-Encoding parse_format(const LineReader& reader, const std::vector<std::string_view>& fields) {
-  if (fields.size() == 3 && fields[0] == "format" && fields[2] == "1.0") {
-    if (fields[1] == "ascii") return Encoding::Ascii;
-    if (fields[1] == "binary_little_endian") return Encoding::Little;
-    if (fields[1] == "binary_big_endian") return Encoding::Big;
-  }
-  reader.fail("found " + quoted(reader.line()) +
-              ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
-}
-
-bool is_remark(std::string_view keyword) { return keyword == "comment" || keyword == "obj_info"; }
-
-Header parse_header(LineReader& reader) {
-  Header header;
-  reader.need("the word ply");
-  if (reader.line() != "ply") reader.fail("found " + quoted(reader.line()) + ", expected the word ply");
-  do reader.need("the format");
-  while (is_remark(reader.fields()[0]));
-  header.encoding = parse_format(reader, reader.fields());
-  while (true) {
-    reader.need("end_header");
-    const auto& fields = reader.fields();
-    if (fields[0] == "end_header") return header;
-    if (is_remark(fields[0])) continue;
-    if (fields[0] == "element" && fields.size() == 3) {
-      for (const Element& other : header.elements)
-        if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
-      header.elements.push_back(
-          {std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
-    } else if (fields[0] == "property" && !header.elements.empty()) {
-      const Property property = parse_property(reader, fields);
-      if (header.elements.back().find(property.name) >= 0)
-        reader.fail("property " + quoted(property.name) + " stands twice");
-      header.elements.back().properties.push_back(property);
-    } else {
-      reader.fail("found " + quoted(reader.line()) + ", expected an element or a property");
-    }
-  }
-}
 
 /// The values of a text body, one element a line.
 class TextBody {
@@ -113,16 +18,16 @@ class TextBody {
   TextBody(const std::string&, LineReader& reader) : reader_(reader) {}
 
   /// The fewest bytes that an element can take: a digit and a separator per property.
-  static std::size_t smallest(const Element& element) { return 2 * element.properties.size(); }
+  static std::size_t smallest(const PlyElement& element) { return 2 * element.properties.size(); }
   std::size_t bytes_left() const { return reader_.rest().size(); }
 
-  void begin(const Element& element, std::int64_t row) {
+  void begin(const PlyElement& element, std::int64_t row) {
     reader_.need("element " + quoted(element.name) + " " + std::to_string(row) + " of " +
                  std::to_string(element.count));
     fields_ = &reader_.fields();
     next_ = 0;
   }
-  double value(const Type& type) {
+  double value(const PlyType& type) {
     if (next_ == fields_->size()) fail("found " + std::to_string(next_) + " values, expected more");
     const std::string_view field = (*fields_)[next_++];
     if (type.kind == 'f') return reader_.number(field);
@@ -154,16 +59,16 @@ class BinaryBody {
  public:
   BinaryBody(const std::string& path, LineReader& reader) : path_(path), all_(reader.rest()), left_(all_) {}
 
-  static std::size_t smallest(const Element& element) {
+  static std::size_t smallest(const PlyElement& element) {
     std::size_t bytes = 0;
-    for (const Property& property : element.properties)
+    for (const PlyProperty& property : element.properties)
       bytes += (property.count_type ? property.count_type : property.type)->bytes;
     return bytes;
   }
   std::size_t bytes_left() const { return left_.size(); }
-  void begin(const Element&, std::int64_t) {}
+  void begin(const PlyElement&, std::int64_t) {}
 
-  double value(const Type& type) {
+  double value(const PlyType& type) {
     place_ = all_.size() - left_.size();
     if (left_.size() < type.bytes) fail("the file ends within a value");
     std::array<unsigned char, 8> raw{};
@@ -186,7 +91,7 @@ class BinaryBody {
   }
 
  private:
-  static double decode(const Type& type, std::uint64_t bits) {
+  static double decode(const PlyType& type, std::uint64_t bits) {
     if (type.kind == 'f' && type.bytes == 8) {
       double number;
       std::memcpy(&number, &bits, 8);
@@ -217,9 +122,9 @@ struct Layout {
 template <class Body>
 class MeshReader {
  public:
-  MeshReader(const std::string& path, const Header& header, LineReader& reader) : path_(path), body_(path, reader) {
+  MeshReader(const std::string& path, const PlyHeader& header, LineReader& reader) : path_(path), body_(path, reader) {
     bool seen = false;
-    for (const Element& element : header.elements) {
+    for (const PlyElement& element : header.elements) {
       check_size(element);
       const Layout layout = layout_of(element);
       if (element.name == "vertex") {
@@ -244,7 +149,7 @@ class MeshReader {
 
  private:
   /// An element cannot hold more than the bytes that are there.
-  void check_size(const Element& element) const {
+  void check_size(const PlyElement& element) const {
     const std::size_t smallest = Body::smallest(element);
     if (smallest > 0 && static_cast<std::size_t>(element.count) > body_.bytes_left() / smallest + 1)
       throw IoError(path_, "header",
@@ -252,7 +157,7 @@ class MeshReader {
                         ", but only " + std::to_string(body_.bytes_left()) + " bytes follow");
   }
 
-  Layout layout_of(const Element& element) const {
+  Layout layout_of(const PlyElement& element) const {
     const Layout layout{element.find("x"), element.find("y"), element.find("z"),
                         std::max(element.find("vertex_indices"), element.find("vertex_index"))};
     if (element.name == "vertex") {
@@ -268,11 +173,11 @@ class MeshReader {
     return layout;
   }
 
-  void read_row(const Element& element, const Layout& layout, std::int64_t row) {
+  void read_row(const PlyElement& element, const Layout& layout, std::int64_t row) {
     const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
     body_.begin(element, row);
     for (int place = 0; place < static_cast<int>(element.properties.size()); ++place) {
-      const Property& property = element.properties[static_cast<std::size_t>(place)];
+      const PlyProperty& property = element.properties[static_cast<std::size_t>(place)];
       if (property.count_type) {
         read_list(property);
         if (is_face && place == layout.corners) add_face();
@@ -288,7 +193,7 @@ class MeshReader {
     body_.end();
   }
 
-  void read_list(const Property& property) {
+  void read_list(const PlyProperty& property) {
     const double count = body_.value(*property.count_type);
     if (!(count >= 0) || count > static_cast<double>(body_.values_left()))
       body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
@@ -326,13 +231,13 @@ class MeshReader {
 
 Mesh parse_ply(const std::string& path, std::string_view content) {
   LineReader reader(path, content);
-  const Header header = parse_header(reader);
+  const PlyHeader header = parse_ply_header(reader);
   switch (header.encoding) {
-    case Encoding::Ascii:
+    case PlyEncoding::Ascii:
       return MeshReader<TextBody>(path, header, reader).take();
-    case Encoding::Big:
+    case PlyEncoding::Big:
       return MeshReader<BinaryBody<true>>(path, header, reader).take();
-    case Encoding::Little:
+    case PlyEncoding::Little:
       break;
   }
   return MeshReader<BinaryBody<false>>(path, header, reader).take();

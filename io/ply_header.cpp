@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "io/ply_header.h"
+
+#include <array>
+
+#include "io/mesh_file.h"
+
+namespace corral {
+namespace {
+
+constexpr std::array<PlyType, 8> kTypes = {{{"char", "int8", 1, 'i'},
+                                            {"uchar", "uint8", 1, 'u'},
+                                            {"short", "int16", 2, 'i'},
+                                            {"ushort", "uint16", 2, 'u'},
+                                            {"int", "int32", 4, 'i'},
+                                            {"uint", "uint32", 4, 'u'},
+                                            {"float", "float32", 4, 'f'},
+                                            {"double", "float64", 8, 'f'}}};
+
+const PlyType* find_type(const LineReader& reader, std::string_view name) {
+  for (const PlyType& type : kTypes)
+    if (name == type.name || name == type.other_name) return &type;
+  reader.fail("found the type " + quoted(name) + ", expected char, uchar, short, ushort, int, uint, float or double");
+}
+
+PlyProperty parse_property(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  if (fields.size() == 3) return {std::string(fields[2]), find_type(reader, fields[1]), nullptr};
+  if (fields.size() != 5 || fields[1] != "list")
+    reader.fail("found " + quoted(reader.line()) + ", expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+  const PlyType* count_type = find_type(reader, fields[2]);
+  if (count_type->kind == 'f') reader.fail("the length of a list is " + quoted(fields[2]) + ", expected a whole type");
+  return {std::string(fields[4]), find_type(reader, fields[3]), count_type};
+}
+
+PlyEncoding parse_format(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  if (fields.size() == 3 && fields[0] == "format" && fields[2] == "1.0") {
+    if (fields[1] == "ascii") return PlyEncoding::Ascii;
+    if (fields[1] == "binary_little_endian") return PlyEncoding::Little;
+    if (fields[1] == "binary_big_endian") return PlyEncoding::Big;
+  }
+  reader.fail("found " + quoted(reader.line()) +
+              ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
+}
+
+bool is_remark(std::string_view keyword) { return keyword == "comment" || keyword == "obj_info"; }
+
+}  // namespace
+
+PlyHeader parse_ply_header(LineReader& reader) {
+  PlyHeader header;
+  reader.need("the word ply");
+  if (reader.line() != "ply") reader.fail("found " + quoted(reader.line()) + ", expected the word ply");
+  do reader.need("the format");
+  while (is_remark(reader.fields()[0]));
+  header.encoding = parse_format(reader, reader.fields());
+  while (true) {
+    reader.need("end_header");
+    const auto& fields = reader.fields();
+    if (fields[0] == "end_header") return header;
+    if (is_remark(fields[0])) continue;
+    if (fields[0] == "element" && fields.size() == 3) {
+      for (const PlyElement& other : header.elements)
+        if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
+      header.elements.push_back(
+          {std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
+    } else if (fields[0] == "property" && !header.elements.empty()) {
+      const PlyProperty property = parse_property(reader, fields);
+      if (header.elements.back().find(property.name) >= 0)
+        reader.fail("property " + quoted(property.name) + " stands twice");
+      header.elements.back().properties.push_back(property);
+    } else {
+      reader.fail("found " + quoted(reader.line()) + ", expected an element or a property");
+    }
+  }
+}
+
+}  // namespace corral

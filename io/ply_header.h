@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/line_reader.h"
+
+namespace corral {
+
+struct PlyType {
+  std::string_view name, other_name;  ///< "int", "int32"
+  std::size_t bytes;
+  char kind;  ///< i: signed, u: unsigned, f: floating point
+};
+struct PlyProperty {
+  std::string name;
+  const PlyType* type = nullptr;
+  const PlyType* count_type = nullptr;  ///< of a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  /// Place of a property among the others, -1 if there is none.
+  int find(std::string_view wanted) const {
+    for (std::size_t i = 0; i < properties.size(); ++i)
+      if (properties[i].name == wanted) return static_cast<int>(i);
+    return -1;
+  }
+};
+
+enum class PlyEncoding { Ascii, Little, Big };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::Ascii;
+  std::vector<PlyElement> elements;
+};
+
+/// Reads up to and including the line end_header. Throws IoError.
+PlyHeader parse_ply_header(LineReader& reader);
+
+}  // namespace corral
