@@ -13,6 +13,12 @@ PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, d
           point_error(estimate, truth.target_from_source, truth.overlap, resolution)};
 }
 
+std::string MethodRecord::status() const {
+  if (!failure.empty()) return "failed: " + failure;
+  if (pose.target_from_source && !pose.converged) return "not converged";
+  return to_text(pose.status);
+}
+
 TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat) {
   TimedGrouping timed;
   std::vector<double> times;

@@ -35,7 +35,8 @@ struct MethodRecord {
   RefinedPose pose;
   std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
 
-  std::string status() const { return failure.empty() ? to_text(pose.status) : "failed: " + failure; }
+  /// "refined", "not converged" (a pose that was still moving), why there is no pose, or "failed: ...".
+  std::string status() const;
 };
 
 /// The median wall time of `repeat` calls (at least 1) and the answer of the first.

@@ -26,7 +26,10 @@ std::string quoted(std::string_view text) {
 }
 
 LineReader::LineReader(const std::string& path, std::string_view text, char comment)
-    : path_(path), text_(text), comment_(comment) {}
+    : path_(path), text_(text), comment_(comment) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors put it in front of UTF-8
+  if (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) text_.remove_prefix(kByteOrderMark.size());
+}
 
 bool LineReader::next() {
   while (!text_.empty()) {

@@ -83,7 +83,11 @@ void require_columns(const CorrespondenceSet& matches, const std::string& who, s
         name = "second_feature_distance", absent = matches.second_feature_distance.size() == 0;
         break;
     }
-    if (absent) throw InvalidInput(who, std::string("column ") + name, "absent", "one value per match");
+    const bool is_frame = column == Column::SourceFrames || column == Column::TargetFrames;
+    if (absent)
+      throw InvalidInput(
+          who, std::string("column ") + name, "absent",
+          is_frame ? "nine values per match (in a file: the columns _frame_0 .. _frame_8)" : "one value per match");
   }
 }
 

@@ -11,7 +11,7 @@ namespace corral {
 
 struct RefineOptions {
   double loss_scale_pr = 5;      ///< residual at which a match begins to lose its influence
-  int maximum_iterations = 100;  ///< at least 1, of Levenberg and Marquardt's method
+  int maximum_iterations = 500;  ///< at least 1, of Levenberg and Marquardt's method
 };
 
 enum class RefineStatus {

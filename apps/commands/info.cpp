@@ -30,7 +30,8 @@ void add_warnings(MeshInfo& info) {
     info.warnings.push_back("no faces: a point cloud, its normals will be turned towards the origin");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");
-  warn(info.topology.degenerate_faces, "faces without area");
+  warn(info.topology.degenerate_faces, "faces without area: left out of components, boundary and edges");
+  warn(info.topology.misoriented_faces, "faces wound against the others: normals will be turned the wrong way there");
   warn(info.topology.non_manifold_faces, "non-manifold faces");
   if (!info.resolution)
     info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");
@@ -60,9 +61,10 @@ Json to_json(const MeshInfo& info) {
           {"duplicates", info.topology.duplicate_vertices},
           {"isolated", info.topology.isolated_vertices},
           {"degenerate_faces", info.topology.degenerate_faces},
+          {"misoriented_faces", info.topology.misoriented_faces},
           {"non_manifold_faces", info.topology.non_manifold_faces},
           {"resolution", json_or_null(info.resolution)},
-          {"mean_edge_length", info.topology.mean_edge_length},
+          {"mean_edge_length", info.faces > 0 ? Json(info.topology.mean_edge_length) : Json(nullptr)},
           {"extent", {info.extent(0), info.extent(1), info.extent(2)}},
           {"diagonal", info.extent.norm()},
           {"warnings", info.warnings}};
@@ -76,8 +78,8 @@ std::string to_text(const MeshInfo& info) {
                      "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges in " +
                      std::to_string(info.topology.boundary_loops) + " loops\n  resolution  " +
                      (info.resolution ? to_text(*info.resolution) : "-") + " mesh units per pr\n  mean edge   " +
-                     to_text(info.topology.mean_edge_length) + "\n  extent      " + to_text(info.extent(0)) + " x " +
-                     to_text(info.extent(1)) + " x " + to_text(info.extent(2)) + "\n";
+                     (info.faces > 0 ? to_text(info.topology.mean_edge_length) : "-") + "\n  extent      " +
+                     to_text(info.extent(0)) + " x " + to_text(info.extent(1)) + " x " + to_text(info.extent(2)) + "\n";
   for (const std::string& warning : info.warnings) text += "  warning     " + warning + "\n";
   return text;
 }

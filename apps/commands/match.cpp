@@ -44,6 +44,7 @@ Mesh read_surface(const std::string& path) {
   const double diagonal = bounding_box_diagonal(mesh.vertices);
   if (!std::isfinite(diagonal))
     throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
+  if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface");
   if (!(diagonal > 0))
     throw IoError(path, "",
                   "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +

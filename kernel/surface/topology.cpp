@@ -26,6 +26,86 @@ bool is_degenerate(const Mesh& mesh, Eigen::Index face) {
   return !(triangle_area(mesh.vertices.row(a), mesh.vertices.row(b), mesh.vertices.row(c)) > 0);
 }
 
+Triangles sound_triangles(const Mesh& mesh) {
+  std::vector<Eigen::Index> sound;
+  for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face)
+    if (!is_degenerate(mesh, face)) sound.push_back(face);
+  return mesh.triangles(sound, Eigen::all);
+}
+
+/// One side of a triangle: its vertices in ascending order, and whether the triangle runs along it that way.
+struct Side {
+  int low, high;
+  int face;
+  bool upwards;
+};
+
+/// All sides, those of one edge next to each other.
+std::vector<Side> sorted_sides(const Triangles& triangles) {
+  std::vector<Side> sides;
+  for (int face = 0; face < static_cast<int>(triangles.rows()); ++face)
+    for (int corner = 0; corner < 3; ++corner) {
+      const int from = triangles(face, corner), to = triangles(face, (corner + 1) % 3);
+      sides.push_back({std::min(from, to), std::max(from, to), face, from < to});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
+  });
+  return sides;
+}
+
+/// A triangle on the other side of an edge that no third one shares; `against` if both run along it the same way.
+struct Across {
+  int face;
+  bool against;
+};
+
+std::vector<std::vector<Across>> neighbors_across(const Triangles& triangles) {
+  std::vector<std::vector<Across>> across(static_cast<std::size_t>(triangles.rows()));
+  const std::vector<Side> sides = sorted_sides(triangles);
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(
+        first, sides.end(), [&](const Side& side) { return side.low != first->low || side.high != first->high; });
+    if (last - first == 2) {
+      const Side &a = first[0], &b = first[1];
+      across[static_cast<std::size_t>(a.face)].push_back({b.face, a.upwards == b.upwards});
+      across[static_cast<std::size_t>(b.face)].push_back({a.face, a.upwards == b.upwards});
+    }
+    first = last;
+  }
+  return across;
+}
+
+/// Turns the triangles of each part that are wound against its majority; returns how many.
+int orient(Triangles& triangles) {
+  const auto across = neighbors_across(triangles);
+  enum Turn : char { Unknown, Kept, Turned };
+  std::vector<Turn> turns(static_cast<std::size_t>(triangles.rows()), Unknown);
+  int count = 0;
+  for (int seed = 0; seed < static_cast<int>(triangles.rows()); ++seed) {
+    if (turns[static_cast<std::size_t>(seed)] != Unknown) continue;
+    turns[static_cast<std::size_t>(seed)] = Kept;
+    Indices part{seed}, turned;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+      const Turn here = turns[static_cast<std::size_t>(part[next])];
+      if (here == Turned) turned.push_back(part[next]);
+      for (const Across& other : across[static_cast<std::size_t>(part[next])]) {
+        Turn& there = turns[static_cast<std::size_t>(other.face)];
+        if (there != Unknown) continue;
+        there = (here == Turned) == other.against ? Kept : Turned;
+        part.push_back(other.face);
+      }
+    }
+    const bool most_turned = 2 * turned.size() > part.size();
+    for (const int face : most_turned ? part : turned)
+      if (!most_turned || turns[static_cast<std::size_t>(face)] == Kept) {
+        std::swap(triangles(face, 1), triangles(face, 2));
+        ++count;
+      }
+  }
+  return count;
+}
+
 /// Builds the half-edges and counts what they cannot take.
 HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
   HalfEdgeMesh half;
@@ -34,12 +114,11 @@ HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
   // OpenMesh reports every face that it refuses on a stream of its own; here refusals are counted.
   const bool was_enabled = omerr().is_enabled();
   omerr().disable();
-  for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face) {
-    if (is_degenerate(mesh, face)) {
-      ++topology.degenerate_faces;
-      continue;
-    }
-    const auto corner = [&](int i) { return OpenMesh::VertexHandle(mesh.triangles(face, i)); };
+  Triangles triangles = sound_triangles(mesh);
+  topology.degenerate_faces = static_cast<int>(mesh.triangles.rows() - triangles.rows());
+  topology.misoriented_faces = orient(triangles);
+  for (Eigen::Index face = 0; face < triangles.rows(); ++face) {
+    const auto corner = [&](int i) { return OpenMesh::VertexHandle(triangles(face, i)); };
     topology.non_manifold_faces += !half.add_face(corner(0), corner(1), corner(2)).is_valid();
   }
   if (was_enabled) omerr().enable();

@@ -10,6 +10,7 @@ struct Topology {
   int duplicate_vertices = 0;   ///< vertices at exactly the place of an earlier one
   int isolated_vertices = 0;    ///< vertices without a triangle (in a mesh that has triangles)
   int degenerate_faces = 0;     ///< triangles with a repeated corner or without area
+  int misoriented_faces = 0;    ///< triangles wound against the majority of their part
   int non_manifold_faces = 0;   ///< triangles that no half-edge structure can take (third on an edge, or folded fan)
   int components = 0;           ///< parts of the triangles that share no vertex
   int boundary_edges = 0;       ///< edges with one triangle
@@ -17,7 +18,8 @@ struct Topology {
   double mean_edge_length = 0;  ///< over all edges, mesh units; 0 without triangles
 };
 
-/// Degenerate and non-manifold triangles are counted and left out of the components, boundaries and edges.
+/// Degenerate and non-manifold triangles are counted and left out of the components, boundaries and edges; misoriented ones
+/// are counted and turned.
 Topology inspect_topology(const Mesh& mesh);
 
 /// The points without exact duplicates, in ascending order of x, then y, then z.

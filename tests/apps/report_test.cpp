@@ -27,6 +27,7 @@ MethodRecord full_record() {
   record.time_ms = 0.1;
   record.score = GroupingScore{9, 3, 2, 7, 2.0 / 3, 2.0 / 7, 0.4};
   record.pose.status = RefineStatus::Refined;
+  record.pose.converged = true;
   record.pose.initial = RigidTransform();
   record.pose.target_from_source = RigidTransform();
   record.pose.covariance = PoseCovariance::Identity();

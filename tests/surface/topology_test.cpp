@@ -43,7 +43,7 @@ void expect_counts(const Topology& found, const Topology& expected) {
 
 /// duplicate, isolated, degenerate, non-manifold, components, boundary edges, loops.
 Topology counts(int duplicate, int isolated, int degenerate, int non_manifold, int components, int edges, int loops) {
-  return {duplicate, isolated, degenerate, non_manifold, components, edges, loops, 0};
+  return {duplicate, isolated, degenerate, 0, non_manifold, components, edges, loops, 0};
 }
 
 TEST(InspectTopology, ClosedSphere) {
@@ -94,11 +94,12 @@ TEST(InspectTopology, ThirdTriangleOnAnEdge) {
 }
 
 TEST(InspectTopology, TriangleGivenTwice) {
+  // Both run along all three edges the same way; turned, the second closes the first like the back of a leaf.
   const Topology topology =
       inspect_topology(mesh_of(points_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), {{0, 1, 2}, {0, 1, 2}}));
-  EXPECT_EQ(topology.non_manifold_faces, 1);
+  EXPECT_EQ(topology.misoriented_faces, 1);
   EXPECT_EQ(topology.components, 1);
-  EXPECT_EQ(topology.boundary_edges, 3);
+  EXPECT_EQ(topology.boundary_edges, 0);
 }
 
 TEST(InspectTopology, DegenerateTrianglesAreCountedAndLeftOut) {
@@ -142,9 +143,28 @@ TEST(InspectTopology, TwoPartsThatTouchInOneVertex) {
 }
 
 TEST(InspectTopology, InconsistentWindingIsTold) {
-  // Both run along 0 -> 1: no half-edge structure takes the second.
+  // Both run along 0 -> 1.
   const Points vertices = points_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}});
-  EXPECT_EQ(inspect_topology(mesh_of(vertices, {{0, 1, 2}, {0, 1, 3}})).non_manifold_faces, 1);
+  const Topology pair = inspect_topology(mesh_of(vertices, {{0, 1, 2}, {0, 1, 3}}));
+  EXPECT_EQ(pair.misoriented_faces, 1);
+  EXPECT_EQ(pair.non_manifold_faces, 0);
+  EXPECT_EQ(pair.boundary_edges, 4);
+}
+
+TEST(InspectTopology, WindingChangesNothingButItsOwnCount) {
+  Mesh mesh = testing::icosphere(2);
+  const Topology sound = inspect_topology(mesh);
+  EXPECT_EQ(sound.misoriented_faces, 0);
+  RandomStream random(3);
+  int turned = 0;
+  for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face)
+    if (random.below(3) == 0) std::swap(mesh.triangles(face, 0), mesh.triangles(face, 1)), ++turned;
+  const Topology shuffled = inspect_topology(mesh);
+  EXPECT_EQ(shuffled.misoriented_faces, turned);
+  EXPECT_EQ(shuffled.non_manifold_faces, 0);
+  EXPECT_EQ(shuffled.boundary_edges, 0);
+  EXPECT_EQ(shuffled.components, 1);
+  EXPECT_NEAR(shuffled.mean_edge_length, sound.mean_edge_length, 1e-14);
 }
 
 TEST(InspectTopology, CountsDoNotDependOnPlaceOrVertexOrder) {
