@@ -216,5 +216,7 @@ TEST(MatchesFile, ThePreambleSaysEverythingOnce) {
               HasSubstr("line 4: found '# source_centroid 0 0 0' a second time"));
 }
 
+TEST(MatchesFile, AByteOrderMarkIsPassedOver) { EXPECT_EQ(read_text("\xEF\xBB\xBF" + kSmallest).size(), 1); }
+
 }  // namespace
 }  // namespace corral
