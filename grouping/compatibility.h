@@ -12,7 +12,7 @@ namespace corral {
 /// Rigidity ratio of two matches from the distance of their points on either surface: min(a/b, b/a), in [0, 1]; 0 if a
 /// distance is 0. 1 means the pair moves rigidly.
 ///
-/// Source    [yang2017evaluation] eq. (3), [buch2014search] eq. (3).
+/// Source    [yang2017evaluation], [buch2014search].
 inline double rigidity_ratio(double source_distance, double target_distance) {
   if (!(source_distance > 0) || !(target_distance > 0)) return 0;
   return std::min(source_distance / target_distance, target_distance / source_distance);

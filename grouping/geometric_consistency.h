@@ -35,7 +35,7 @@ struct GeometricConsistencyOptions {
 /// clique    Seeds in ascending order of feature distance (ties: lower row), each unless it is in a cluster already; a seed
 ///           collects, in the same order over all free matches, those that agree with all collected so far. Clusters of
 ///           more than 3 are kept, the members of others stay free; the largest is selected, the first among equals.
-/// Source    [chen2007consistency]; form and value [yang2017evaluation] eq. (5), Table 1.
+/// Source    [chen2007consistency]; form and value [yang2017evaluation], Table 1.
 /// Reads     source_points, target_points, resolution; feature_distance only for the clique.
 /// Returns   selected only.
 /// Cost      O(M^2) time, O(M) memory. Deterministic.

@@ -32,7 +32,7 @@ struct HoughVotingOptions {
 ///
 /// pr5       selected are the votes that have a share in the cell with the largest sum of weights, no neighbours. The cells
 ///           go on beyond the corner of the box: a vote near it shares with the cell below.
-/// Source    [tombari2010hough]; form [yang2017evaluation] eq. (6)-(7), which prints R twice: the second is its transpose.
+/// Source    [tombari2010hough]; form [yang2017evaluation], which prints R twice: the second is its transpose.
 /// Reads     source_points, target_points, source_frames, target_frames, resolution, source_centroid (default: the mean
 ///           of the source points).
 /// Returns   selected only.

@@ -31,7 +31,7 @@ struct NearestNeighborRatioOptions {
 ///
 ///   s(c) = 1 - d1/d2        selected = { c : d1/d2 <= threshold }
 ///
-/// Source    [yang2017evaluation] eq. (2); [lowe2004distinctive] section 7.1.
+/// Source    [yang2017evaluation] eq. (2); [lowe2004distinctive].
 /// Reads     feature_distance, second_feature_distance.
 /// Returns   selected, scores.
 /// Cost      O(M) time, O(M) memory. Deterministic.

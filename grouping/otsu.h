@@ -25,7 +25,7 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// covis     the threshold is index / (bins - 1), index the last bin of the lower class; accepts score > threshold.
 ///
 /// All scores equal (for the histograms: all in one bin): all rows. covis puts scores outside [0, 1] into the end bins.
-/// Source    [otsu1979threshold] eq. (12)-(18); bins100 after the program of [yang2017evaluation], covis of [buch2014search].
+/// Source    [otsu1979threshold]; bins100 after the program of [yang2017evaluation], covis of [buch2014search].
 /// Departs   bins100 subtracts the smallest score before it indexes a bin (the program it follows does not, and so shifts
 ///           every bin when that score is not 0).
 /// Throws    InvalidInput if a score is not finite.

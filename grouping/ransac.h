@@ -24,7 +24,7 @@ struct RansacOptions {
 ///
 ///   e(c, T) = |T p - p'|        T* = argmax_T | { c : e(c, T) < tolerance } |        selected = { c : e(c, T*) < tolerance }
 ///
-/// Source    [fischler1981random]; form and values [yang2017evaluation] section 2.3, Table 1.
+/// Source    [fischler1981random]; form and values [yang2017evaluation], Table 1.
 /// Reads     source_points, target_points, resolution.
 /// Returns   selected, and the pose T* of the winning triple (not refitted).
 /// Cost      O(iterations * M) time, O(M) memory. Deterministic for a seed.

@@ -46,7 +46,7 @@ struct SearchOfInliersOptions {
 ///
 /// covis     C_G is chosen by the local score |Y_L|/|C_L| (an empty C_L scores 0), both ratios compare with >=, and the
 ///           ratio test is strict.
-/// Source    [buch2014search]; form and values [yang2017evaluation] eq. (8)-(11), Table 1.
+/// Source    [buch2014search]; form and values [yang2017evaluation], Table 1.
 /// Reads     all columns: points, frames, both feature distances, resolution.
 /// Returns   selected, scores.
 /// Cost      O(M^2 + M kappa) time, O(M) memory. Deterministic.

@@ -20,7 +20,7 @@ struct SimilarityScoreOptions {
 ///
 ///   s(c) = 1 - d1        selected = { c : s(c) >= Otsu(s) }
 ///
-/// Source    [yang2017evaluation] eq. (1); threshold [otsu1979threshold].
+/// Source    [yang2017evaluation]; threshold [otsu1979threshold].
 /// Reads     feature_distance.
 /// Returns   selected, scores.
 /// Cost      O(M log M) time, O(M) memory. Deterministic.

@@ -30,7 +30,7 @@ struct SpectralOptions {
 ///   until    nobody is alive, or max x <= 1e-9
 ///
 /// once      x is computed for the full graph only.      weighted   M_ij = r(i,j) where r(i,j) >= similarity.
-/// Source    [leordeanu2005spectral]; form and value [yang2017evaluation] section 2.4, Table 1.
+/// Source    [leordeanu2005spectral]; form and value [yang2017evaluation], Table 1.
 /// Reads     source_points, target_points.
 /// Returns   selected only.
 /// Cost      O(M^2) time for each accepted match and matrix product, O(M^2) memory. Deterministic.

@@ -11,7 +11,7 @@ namespace corral {
 
 /// Which matches are right: label i is true iff |T p_i - q_i| <= threshold, T the ground truth (inclusive).
 ///
-/// Source    [yang2017evaluation] section 3.2, threshold 4 pr.
+/// Source    [yang2017evaluation], threshold 4 pr.
 /// Throws    InvalidInput: invalid table, or a threshold that is not finite and >= 0.
 std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
                                 double threshold_pr);

@@ -34,7 +34,7 @@ bool is_rotation(const Eigen::Matrix3d& matrix, double tolerance);
 ///
 ///   H = sum (p - mean p)(q - mean q)^T = U S V^T,   R = V diag(1, 1, det(V U^T)) U^T,   t = mean q - R mean p
 ///
-/// Source    [kabsch1976solution], [umeyama1991least] eq. (34)-(42) without scale.
+/// Source    [kabsch1976solution], [umeyama1991least] without scale.
 /// Returns   the motion, proper even for a mirrored or planar set; absent for fewer than 3 rows, or when the second
 ///           singular value of H is at most 1e-6 of the first (collinear or coincident rows), or anything is not finite.
 /// Throws    InvalidInput if the two sides differ in length.

@@ -81,7 +81,6 @@ Json to_json(const PairRun& run, const Settings& settings) {
 
 /// Every intermediate file of the run, all or none; what an earlier run left of other methods goes.
 void write_folder(const PairRun& run, const Settings& settings) {
-  make_folder(settings.output);
   const std::string folder = settings.output + "/";
   std::vector<FileContent> files{{folder + "matches.csv", matches_text(run.pair.matches)},
                                  {folder + "match_report.json", json_text(corral::to_json(run.pair.report))},

@@ -19,7 +19,7 @@ constexpr int kShotSize = 352;
 /// x and z are the eigenvectors of the largest and the smallest eigenvalue, turned to the side where at least half of the
 /// neighbours lie; on an exact tie to the side of most of the five neighbours around the median distance. y = z cross x.
 /// `neighbors`  the vertices within `radius` of the point (those at distance 0 are left out), in any order.
-/// Source    [tombari2010shot] section 3.
+/// Source    [tombari2010shot].
 /// Returns   absent for fewer than 5 neighbours, or where all lie so that no frame is finite.
 std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eigen::Vector3d& point,
                                               const std::vector<Neighbor>& neighbors, double radius);
@@ -31,7 +31,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eige
 ///
 /// Order     bin = ((azimuth * 2 + elevation) * 2 + radius) * 11 + cosine; azimuth sectors from -180 degrees counter-
 ///           clockwise, elevation 0 above (z > 0), radius 0 inside R/2.
-/// Source    [tombari2010shot] section 4; additive interpolation and L2 norm as in the library that [yang2017evaluation] ran.
+/// Source    [tombari2010shot]; additive interpolation and L2 norm as in the library that [yang2017evaluation] ran.
 /// Departs   The neighbour of the last cosine bin is clamped; that library wraps it to bin 0. Its order of bins differs.
 std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals,
                                               const Eigen::Vector3d& point, const LocalReferenceFrame& frame,

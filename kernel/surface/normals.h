@@ -10,7 +10,7 @@ namespace corral {
 /// to the side of the area-weighted sum of the face normals where that is not zero, else towards a sensor at the origin.
 /// A row is zero where fewer than 3 distinct neighbours, or all on one line, give no direction.
 ///
-/// Source    [rusu2009thesis] section 4.3; k = 20 after the program of [yang2017evaluation].
+/// Source    [rusu2009thesis]; k = 20 after the program of [yang2017evaluation].
 /// Departs   The authors turn every normal towards the origin, which on closed models flips neighbours against each other;
 ///           with faces we take their side, on a noisy mesh that of its own faces.
 /// Throws    InvalidInput for k < 3.

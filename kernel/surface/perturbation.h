@@ -11,7 +11,7 @@ namespace corral {
 /// A copy of the mesh with independent normal noise of the given deviation (mesh units) on every coordinate. The triangles
 /// stay, so that vertex i of the copy is vertex i of the mesh.
 ///
-/// Source    [yang2017evaluation] section 3.1.
+/// Source    [yang2017evaluation].
 /// Throws    InvalidInput if the deviation is not finite and >= 0.
 Mesh add_gaussian_noise(const Mesh& mesh, double deviation, std::uint64_t seed);
 

@@ -8,7 +8,7 @@ namespace corral {
 /// Point resolution pr of a surface in mesh units: the mean distance of a vertex to its nearest other vertex. Exact
 /// duplicates of a vertex count once. This is not the mean edge length, which is about 1.5 pr.
 ///
-/// Source    [yang2017evaluation] section 3.2, and the authors' program (k = 2 nearest neighbours, averaged).
+/// Source    [yang2017evaluation], and the authors' program (k = 2 nearest neighbours, averaged).
 /// Cost      O(V log V) time.
 /// Throws    InvalidInput for fewer than two distinct vertices.
 double point_resolution(const Points& vertices);

@@ -13,6 +13,7 @@ namespace corral {
 namespace {
 
 using ::testing::AllOf;
+using testing::complaint;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::io_error_of;
@@ -32,10 +33,7 @@ GroupTable read_text(const std::string& text) {
 std::string refusal(const std::string& text) {
   const ScratchFolder folder;
   const std::string path = put_text(folder / "group.csv", text);
-  const std::string error = io_error_of([&] { read_group(path); });
-  if (error.empty()) return "";
-  EXPECT_THAT(error, StartsWith(path));
-  return error.substr(path.size());
+  return complaint(path, [&] { read_group(path); });
 }
 
 TEST(GroupFile, WritesTheFormatOfTheIssue) {

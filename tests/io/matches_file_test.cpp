@@ -15,9 +15,9 @@ namespace corral {
 namespace {
 
 using ::testing::AllOf;
+using testing::complaint;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::io_error_of;
 using testing::put_text;
 using testing::replaced;
 using testing::ScratchFolder;
@@ -36,10 +36,7 @@ CorrespondenceSet read_text(const std::string& text) {
 std::string refusal(const std::string& text) {
   const ScratchFolder folder;
   const std::string path = put_text(folder / "matches.csv", text);
-  const std::string error = io_error_of([&] { read_matches(path); });
-  if (error.empty()) return "";
-  EXPECT_THAT(error, StartsWith(path));
-  return error.substr(path.size());
+  return complaint(path, [&] { read_matches(path); });
 }
 
 CorrespondenceSet full_table(int rows) {

@@ -14,6 +14,7 @@ namespace corral {
 namespace {
 
 using ::testing::AllOf;
+using testing::complaint;
 using ::testing::HasSubstr;
 using testing::io_error_of;
 using testing::put_text;
@@ -28,10 +29,7 @@ const std::string kSquareObj = "v 0 0 0.5\nv 1 0 0.5\nv 1 1 0.5\nv 0 1 0.5\nf 1 
 template <class Parser>
 std::string refusal(Parser parser, const std::string& content) {
   const std::string path = "folder/mesh";
-  const std::string error = io_error_of([&] { parser(path, content); });
-  if (error.empty()) return "";
-  EXPECT_THAT(error, StartsWith(path));
-  return error.substr(path.size());
+  return complaint(path, [&] { parser(path, content); });
 }
 std::string off_refusal(const std::string& content) { return refusal(parse_off, content); }
 std::string obj_refusal(const std::string& content) { return refusal(parse_obj, content); }

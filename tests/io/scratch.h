@@ -3,6 +3,7 @@
 
 // Files for tests: a folder that is gone afterwards, and what reading a file complains about.
 
+#include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <algorithm>
@@ -71,6 +72,15 @@ std::string io_error_of(Call&& call) {
     return error.what();
   }
   return "";
+}
+
+/// What an IoError says after the name of the file, which must come first; empty if the call throws nothing.
+template <class Call>
+std::string complaint(const std::string& path, Call&& call) {
+  const std::string error = io_error_of(call);
+  if (error.empty()) return "";
+  EXPECT_EQ(error.substr(0, path.size()), path);
+  return error.substr(path.size());
 }
 
 /// All occurrences of one text replaced by another.

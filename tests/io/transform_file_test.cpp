@@ -15,12 +15,11 @@ namespace corral {
 namespace {
 
 using ::testing::AllOf;
+using testing::complaint;
 using ::testing::HasSubstr;
-using testing::io_error_of;
 using testing::put_text;
 using testing::replaced;
 using testing::ScratchFolder;
-using ::testing::StartsWith;
 
 const std::string kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
@@ -33,10 +32,7 @@ RigidTransform read_text(const std::string& text) {
 std::string refusal(const std::string& text) {
   const ScratchFolder folder;
   const std::string path = put_text(folder / "pose.xf", text);
-  const std::string error = io_error_of([&] { read_transform(path); });
-  if (error.empty()) return "";
-  EXPECT_THAT(error, StartsWith(path));
-  return error.substr(path.size());
+  return complaint(path, [&] { read_transform(path); });
 }
 
 std::string text_of_rotation(const Eigen::Matrix3d& rotation) {

@@ -35,6 +35,7 @@ void expect_counts(const Topology& found, const Topology& expected) {
   EXPECT_EQ(found.duplicate_vertices, expected.duplicate_vertices);
   EXPECT_EQ(found.isolated_vertices, expected.isolated_vertices);
   EXPECT_EQ(found.degenerate_faces, expected.degenerate_faces);
+  EXPECT_EQ(found.misoriented_faces, expected.misoriented_faces);
   EXPECT_EQ(found.non_manifold_faces, expected.non_manifold_faces);
   EXPECT_EQ(found.components, expected.components);
   EXPECT_EQ(found.boundary_edges, expected.boundary_edges);
