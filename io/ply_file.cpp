@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // PLY: a text header that names elements and their properties, then the elements as lines of text or as packed bytes.
-#include <array>
 #include <cmath>
-#include <cstring>
 
 #include "io/mesh_file.h"
 #include "io/ply_header.h"
@@ -29,12 +27,7 @@ class TextBody {
   }
   double value(const PlyType& type) {
     if (next_ == fields_->size()) fail("found " + std::to_string(next_) + " values, expected more");
-    const std::string_view field = (*fields_)[next_++];
-    if (type.kind == 'f') return reader_.number(field);
-    const std::int64_t values = std::int64_t{1} << (8 * type.bytes);
-    const std::int64_t low = type.kind == 'i' ? -values / 2 : 0;
-    return static_cast<double>(
-        reader_.integer(field, low, low + values - 1, "a value of type " + std::string(type.name)));
+    return parse_number(reader_, (*fields_)[next_++], type, type.name);
   }
   std::size_t values_left() const { return fields_->size() - next_; }
   void end() {
@@ -71,11 +64,7 @@ class BinaryBody {
   double value(const PlyType& type) {
     place_ = all_.size() - left_.size();
     if (left_.size() < type.bytes) fail("the file ends within a value");
-    std::array<unsigned char, 8> raw{};
-    std::uint64_t bits = 0;
-    std::memcpy(raw.data(), left_.data(), type.bytes);
-    for (std::size_t i = 0; i < type.bytes; ++i) bits = bits << 8 | raw[kBigEndian ? i : type.bytes - 1 - i];
-    const double number = decode(type, bits);
+    const double number = decode_number(type, left_.data(), kBigEndian);
     left_.remove_prefix(type.bytes);
     return number;
   }
@@ -91,23 +80,6 @@ class BinaryBody {
   }
 
  private:
-  static double decode(const PlyType& type, std::uint64_t bits) {
-    if (type.kind == 'f' && type.bytes == 8) {
-      double number;
-      std::memcpy(&number, &bits, 8);
-      return number;
-    }
-    if (type.kind == 'f') {
-      const auto word = static_cast<std::uint32_t>(bits);
-      float number;
-      std::memcpy(&number, &word, 4);
-      return number;
-    }
-    if (type.kind == 'u') return static_cast<double>(bits);
-    const unsigned unused = 64 - 8 * static_cast<unsigned>(type.bytes);
-    return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);  // carries the sign up
-  }
-
   const std::string& path_;
   std::string_view all_, left_;
   std::size_t place_ = 0;  // of the value read last

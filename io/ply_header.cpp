@@ -8,14 +8,14 @@
 namespace corral {
 namespace {
 
-constexpr std::array<PlyType, 8> kTypes = {{{"char", "int8", 1, 'i'},
-                                            {"uchar", "uint8", 1, 'u'},
-                                            {"short", "int16", 2, 'i'},
-                                            {"ushort", "uint16", 2, 'u'},
-                                            {"int", "int32", 4, 'i'},
-                                            {"uint", "uint32", 4, 'u'},
-                                            {"float", "float32", 4, 'f'},
-                                            {"double", "float64", 8, 'f'}}};
+constexpr std::array<PlyType, 8> kTypes = {{{{1, 'i'}, "char", "int8"},
+                                            {{1, 'u'}, "uchar", "uint8"},
+                                            {{2, 'i'}, "short", "int16"},
+                                            {{2, 'u'}, "ushort", "uint16"},
+                                            {{4, 'i'}, "int", "int32"},
+                                            {{4, 'u'}, "uint", "uint32"},
+                                            {{4, 'f'}, "float", "float32"},
+                                            {{8, 'f'}, "double", "float64"}}};
 
 const PlyType* find_type(const LineReader& reader, std::string_view name) {
   for (const PlyType& type : kTypes)

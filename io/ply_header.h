@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "io/line_reader.h"
+#include "io/stored_number.h"
 
 namespace corral {
 
-struct PlyType {
+struct PlyType : NumberType {
   std::string_view name, other_name;  ///< "int", "int32"
-  std::size_t bytes;
-  char kind;  ///< i: signed, u: unsigned, f: floating point
 };
 struct PlyProperty {
   std::string name;
