@@ -35,9 +35,11 @@ Mesh read_mesh(const std::string& path) {
   const auto parser = ending == ".ply"   ? parse_ply
                       : ending == ".off" ? parse_off
                       : ending == ".obj" ? parse_obj
+                      : ending == ".stl" ? parse_stl
                                          : nullptr;
   const std::string content = read_file(path);
-  if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in .ply, .off or .obj");
+  if (!parser)
+    throw IoError(path, "", "unknown mesh format, expected a name that ends in " + std::string(kMeshEndings));
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
   return parser(path, content);
 }

@@ -64,14 +64,15 @@ TEST(MeshFile, TheEndingNamesTheFormat) {
   const ScratchFolder folder;
   for (const char* name : {"a.off", "a.OFF", "b.c.Off"}) expect_square(read_mesh(put_text(folder / name, kSquareOff)));
   for (const char* name : {"a.obj", "a.OBJ"}) expect_square(read_mesh(put_text(folder / name, kSquareObj)));
-  for (const char* name : {"a.stl", "off", "a.off.gz", ".off"})
-    EXPECT_EQ(io_error_of([&] { read_mesh(put_text(folder / name, kSquareOff)); }),
-              (folder / name) + ": unknown mesh format, expected a name that ends in .ply, .off or .obj");
+  for (const char* name : {"a.gltf", "off", "a.off.gz", ".off"})
+    EXPECT_EQ(
+        io_error_of([&] { read_mesh(put_text(folder / name, kSquareOff)); }),
+        (folder / name) + ": unknown mesh format, expected a name that ends in .ply, .off, .obj or .stl");
 }
 
 TEST(MeshFile, NamesWhatIsNotAFileWithAMesh) {
   const ScratchFolder folder;
-  for (const char* ending : {".ply", ".off", ".obj"}) {
+  for (const char* ending : {".ply", ".off", ".obj", ".stl"}) {
     const std::string path = folder / ("mesh" + std::string(ending));
     EXPECT_EQ(io_error_of([&] { read_mesh(path); }), path + ": does not exist");
     EXPECT_EQ(io_error_of([&] { read_mesh(put_text(path, "")); }), path + ": the file is empty, expected a mesh");

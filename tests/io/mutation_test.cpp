@@ -84,6 +84,24 @@ TEST(Mutation, PlyAscii) { survive_as_mesh(testing::intricate_ply("ascii"), 3, p
 TEST(Mutation, PlyLittleEndian) { survive_as_mesh(testing::intricate_ply("binary_little_endian"), 4, parse_ply); }
 TEST(Mutation, PlyBigEndian) { survive_as_mesh(testing::intricate_ply("binary_big_endian"), 5, parse_ply); }
 
+TEST(Mutation, StlText) {
+  survive_as_mesh(
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.5\nvertex 1 0 0.5\nvertex 1 1 0.5\nendloop\nendfacet\n"
+      "endsolid a\n",
+      10, parse_stl);
+}
+
+TEST(Mutation, StlBinary) {
+  std::string content(80, ' ');
+  content += testing::encode({'I', 2}, false);
+  for (int facet = 0; facet < 2; ++facet) {
+    for (int i = 0; i < 12; ++i) content += testing::encode({'f', (i * 5 + facet) % 4 - 1.5}, false);
+    content += std::string(2, '\0');
+  }
+  survive_as_mesh(content, 11, parse_stl);
+}
+
+
 TEST(Mutation, Matches) {
   SyntheticOptions options;
   options.matches = 3;
