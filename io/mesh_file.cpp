@@ -36,6 +36,7 @@ Mesh read_mesh(const std::string& path) {
                       : ending == ".off" ? parse_off
                       : ending == ".obj" ? parse_obj
                       : ending == ".stl" ? parse_stl
+                      : ending == ".xyz" ? parse_xyz
                                          : nullptr;
   const std::string content = read_file(path);
   if (!parser)

@@ -101,6 +101,7 @@ TEST(Mutation, StlBinary) {
   survive_as_mesh(content, 11, parse_stl);
 }
 
+TEST(Mutation, Xyz) { survive_as_mesh("# by hand\n0 0 0.5\n1 0 .5\n1 1e0 0.5\n0,1,0.5\n", 12, parse_xyz); }
 
 TEST(Mutation, Matches) {
   SyntheticOptions options;
