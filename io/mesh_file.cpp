@@ -37,6 +37,7 @@ Mesh read_mesh(const std::string& path) {
                       : ending == ".obj" ? parse_obj
                       : ending == ".stl" ? parse_stl
                       : ending == ".xyz" ? parse_xyz
+                      : ending == ".pcd" ? parse_pcd
                                          : nullptr;
   const std::string content = read_file(path);
   if (!parser)

@@ -10,15 +10,17 @@
 namespace corral {
 
 /// The endings of the names that read_mesh takes, in words for messages.
-constexpr std::string_view kMeshEndings = ".ply, .off, .obj, .stl or .xyz";
+constexpr std::string_view kMeshEndings = ".ply, .off, .obj, .stl, .xyz or .pcd";
 
 /// Reads a mesh or a point cloud; the format is that of the name's ending: .ply (ASCII and both binaries), .off, .obj,
-/// .stl (ASCII and binary), and for clouds only .xyz.
+/// .stl (ASCII and binary), and for clouds only .xyz and .pcd (ASCII and binary, not compressed).
 /// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
 /// anything is allocated.
 ///   STL  corners at exactly the same place are one vertex (-0 is +0), numbered as they first appear; a facet that
 ///        repeats a corner stays. The normals are not read.
 ///   XYZ  one point a line, separated by white space or commas; columns after the third are not read.
+///   PCD  points whose x, y and z are all nan are missing returns of the sensor and left out. The pose of the sensor
+///        (VIEWPOINT) is not applied.
 /// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, more or
 ///           less than the header promises, a coordinate that is not finite, a face of a vertex that is not there.
 Mesh read_mesh(const std::string& path);
@@ -38,6 +40,7 @@ Mesh parse_off(const std::string& path, std::string_view content);
 Mesh parse_obj(const std::string& path, std::string_view content);
 Mesh parse_stl(const std::string& path, std::string_view content);
 Mesh parse_xyz(const std::string& path, std::string_view content);
+Mesh parse_pcd(const std::string& path, std::string_view content);
 
 /// The most vertices or faces a mesh may have: they are counted in int.
 constexpr long long kMaximumCount = 2147483647;

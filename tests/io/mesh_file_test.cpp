@@ -67,12 +67,12 @@ TEST(MeshFile, TheEndingNamesTheFormat) {
   for (const char* name : {"a.gltf", "off", "a.off.gz", ".off"})
     EXPECT_EQ(
         io_error_of([&] { read_mesh(put_text(folder / name, kSquareOff)); }),
-        (folder / name) + ": unknown mesh format, expected a name that ends in .ply, .off, .obj, .stl or .xyz");
+        (folder / name) + ": unknown mesh format, expected a name that ends in .ply, .off, .obj, .stl, .xyz or .pcd");
 }
 
 TEST(MeshFile, NamesWhatIsNotAFileWithAMesh) {
   const ScratchFolder folder;
-  for (const char* ending : {".ply", ".off", ".obj", ".stl", ".xyz"}) {
+  for (const char* ending : {".ply", ".off", ".obj", ".stl", ".xyz", ".pcd"}) {
     const std::string path = folder / ("mesh" + std::string(ending));
     EXPECT_EQ(io_error_of([&] { read_mesh(path); }), path + ": does not exist");
     EXPECT_EQ(io_error_of([&] { read_mesh(put_text(path, "")); }), path + ": the file is empty, expected a mesh");

@@ -12,6 +12,7 @@
 #include "io/transform_file.h"
 #include "kernel/random.h"
 #include "kernel/synthetic.h"
+#include "tests/io/pcd_encoder.h"
 #include "tests/io/ply_encoder.h"
 #include "tests/io/scratch.h"
 
@@ -102,6 +103,8 @@ TEST(Mutation, StlBinary) {
 }
 
 TEST(Mutation, Xyz) { survive_as_mesh("# by hand\n0 0 0.5\n1 0 .5\n1 1e0 0.5\n0,1,0.5\n", 12, parse_xyz); }
+TEST(Mutation, PcdText) { survive_as_mesh(testing::intricate_pcd(false), 13, parse_pcd); }
+TEST(Mutation, PcdBinary) { survive_as_mesh(testing::intricate_pcd(true), 14, parse_pcd); }
 
 TEST(Mutation, Matches) {
   SyntheticOptions options;

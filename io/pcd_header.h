@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/stored_number.h"
+
+namespace corral {
+
+struct PcdField {
+  std::string name;
+  NumberType type{4, 'f'};
+  std::string type_name;   ///< "F4"
+  std::int64_t count = 1;  ///< values of it in each point
+  int axis = -1;           ///< 0, 1, 2 for x, y, z
+};
+
+enum class PcdEncoding { Ascii, Binary };
+
+struct PcdHeader {
+  std::vector<PcdField> fields;  ///< x, y and z are among them, once each
+  std::int64_t points = 0;
+  PcdEncoding encoding = PcdEncoding::Ascii;
+
+  std::size_t values_per_point() const;
+  std::size_t bytes_per_point() const;
+};
+
+/// Reads up to and including the line DATA. Throws IoError.
+PcdHeader parse_pcd_header(LineReader& reader);
+
+}  // namespace corral
