@@ -27,7 +27,9 @@ void add_warnings(MeshInfo& info) {
     if (count > 0) info.warnings.push_back(std::to_string(count) + " " + text);
   };
   if (info.faces == 0)
-    info.warnings.push_back("no faces: a point cloud, its normals will be turned towards the origin");
+    info.warnings.push_back(
+        "no faces: a point cloud, its normals will be turned towards the origin; 'corral triangulate' gives a view "
+        "faces");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area: left out of components, boundary and edges");

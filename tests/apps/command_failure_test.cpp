@@ -109,10 +109,10 @@ TEST(BadInput, EveryCommandNamesTheFileThatIsMissing) {
   write_mesh(place / "a.ply", testing::icosphere(1));
   for (const char* command :
        {"info no.ply", "match no.ply a.ply", "match a.ply no.ply", "run no.ply a.ply", "run a.ply no.ply",
-        "run a.ply a.ply --truth no.ply", "perturb no.ply -o b.ply", "group no.ply -m gc", "refine no.ply group.csv",
-        "refine matches.csv no.ply", "refine matches.csv group.csv --truth no.ply",
-        "score no.ply group.csv --truth truth.txt", "score matches.csv no.ply --truth truth.txt",
-        "score matches.csv group.csv --truth no.ply"}) {
+        "run a.ply a.ply --truth no.ply", "perturb no.ply -o b.ply", "triangulate no.ply -o b.ply",
+        "group no.ply -m gc", "refine no.ply group.csv", "refine matches.csv no.ply",
+        "refine matches.csv group.csv --truth no.ply", "score no.ply group.csv --truth truth.txt",
+        "score matches.csv no.ply --truth truth.txt", "score matches.csv group.csv --truth no.ply"}) {
     SCOPED_TRACE(command);
     expect_bad_input(place.corral(command), "no.ply: does not exist");
   }

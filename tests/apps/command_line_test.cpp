@@ -32,14 +32,15 @@ void expect_ok(const Outcome& outcome) {
 TEST(Help, ListsTheCommandsAndTheExitStatuses) {
   const Outcome help = Workplace().corral("--help");
   expect_ok(help);
-  for (const char* command : {"run", "info", "match", "group", "refine", "score", "groupers", "perturb"})
+  for (const char* command : {"run", "info", "match", "group", "refine", "score", "groupers", "perturb", "triangulate"})
     EXPECT_THAT(help.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(help.out, HasSubstr("Exit status: 0 done, 2 wrong usage, 3 bad input, 4"));
 }
 
 TEST(Help, EveryCommandHasAnExample) {
   const Workplace place;
-  for (const char* command : {"run", "info", "match", "group", "refine", "score", "groupers", "perturb"}) {
+  for (const char* command :
+       {"run", "info", "match", "group", "refine", "score", "groupers", "perturb", "triangulate"}) {
     const Outcome help = place.corral(std::string(command) + " --help");
     expect_ok(help);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr("\n  corral " + std::string(command) + " ")))
