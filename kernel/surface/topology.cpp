@@ -160,6 +160,20 @@ Points distinct_points(const Points& points) {
   return points(order, Eigen::all);
 }
 
+std::vector<Indices> vertex_rings(const Mesh& mesh) {
+  Topology unused;
+  const HalfEdgeMesh half = half_edges(mesh, unused);
+  std::vector<Indices> rings(static_cast<std::size_t>(mesh.vertices.rows()));
+  // By edges, not by turning around each vertex: where two fans touch in a vertex, the turn would see one of them.
+  for (const auto edge : half.edges()) {
+    const int a = edge.v0().idx(), b = edge.v1().idx();
+    rings[static_cast<std::size_t>(a)].push_back(b);
+    rings[static_cast<std::size_t>(b)].push_back(a);
+  }
+  for (Indices& ring : rings) std::sort(ring.begin(), ring.end());
+  return rings;
+}
+
 Topology inspect_topology(const Mesh& mesh) {
   Topology topology;
   topology.duplicate_vertices = static_cast<int>(mesh.vertices.rows() - distinct_points(mesh.vertices).rows());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
 #include "kernel/surface/mesh.h"
 
 namespace corral {
@@ -21,6 +23,10 @@ struct Topology {
 /// Degenerate and non-manifold triangles are counted and left out of the components, boundaries and edges; misoriented ones
 /// are counted and turned.
 Topology inspect_topology(const Mesh& mesh);
+
+/// For each vertex the vertices that an edge joins to it, ascending; none for a vertex without a triangle. Degenerate and
+/// non-manifold triangles are left out, however they are wound.
+std::vector<Indices> vertex_rings(const Mesh& mesh);
 
 /// The points without exact duplicates, in ascending order of x, then y, then z.
 Points distinct_points(const Points& points);

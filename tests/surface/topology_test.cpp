@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "kernel/random.h"
 #include "kernel/surface/resolution.h"
 #include "tests/support/meshes.h"
@@ -195,6 +197,27 @@ TEST(InspectTopology, RandomTrianglesDoNotCrash) {
     EXPECT_GE(topology.components, 1);
     EXPECT_LE(3 * topology.boundary_loops, topology.boundary_edges);
   }
+}
+
+TEST(VertexRings, AreTheEdgesOfTheSoundTriangles) {
+  // 0 1 2 and 1 0 3 share an edge, 0 4 5 touches them in a vertex; then a third on that edge, two without area, and 6 alone.
+  const Points vertices = points_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}});
+  const std::vector<Indices> expected = {{1, 2, 3, 4, 5}, {0, 2, 3}, {0, 1}, {0, 1}, {0, 5}, {0, 4}, {}};
+  EXPECT_EQ(vertex_rings(mesh_of(vertices, {{0, 1, 2}, {1, 0, 3}, {0, 4, 5}, {0, 1, 6}, {3, 2, 0}, {6, 6, 1}})),
+            expected);
+  EXPECT_EQ(vertex_rings(mesh_of(vertices, {{0, 1, 2}, {0, 1, 3}, {0, 5, 4}})), expected) << "winding";
+}
+
+TEST(VertexRings, OfAClosedSphere) {
+  int five = 0, six = 0;
+  for (const Indices& ring : vertex_rings(testing::icosphere(3))) {
+    five += ring.size() == 5;
+    six += ring.size() == 6;
+    EXPECT_TRUE(std::is_sorted(ring.begin(), ring.end()));
+  }
+  EXPECT_EQ(five, 12);
+  EXPECT_EQ(six, 630);
+  EXPECT_TRUE(vertex_rings({Points(0, 3), Triangles(0, 3)}).empty());
 }
 
 TEST(DistinctPoints, SortsAndDropsCopies) {
