@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/peak_memory.h"
 #include "apps/stopwatch.h"
+#include "apps/workers.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/descriptor.h"
-#include "kernel/surface/feature_matching.h"
 #include "kernel/surface/keypoints.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/resolution.h"
@@ -40,28 +41,76 @@ double pair_resolution(const std::string& rule, double source, double target) {
   return as_length(rule).value();
 }
 
-Descriptors describe(const Mesh& mesh, const std::string& side, double resolution, const MatchSettings& settings,
-                     SurfaceReport& report, const StageObserver& observe) {
-  const PointIndex index(mesh.vertices);
-  observe("keypoints of the " + side);
-  Stopwatch watch;
-  const Keypoints keypoints =
-      detect_harris(mesh, index, resolution, {settings.keypoint_radius_pr, settings.support_radius_pr});
-  report.keypoints_ms = watch.lap_ms();
-  observe("normals of the " + side);
-  const Points normals = estimate_normals(mesh, index);
-  report.normals_ms = watch.lap_ms();
-  observe("descriptors of the " + side);
-  Descriptors descriptors =
-      describe_shot(mesh, normals, index, keypoints.vertices, resolution, settings.support_radius_pr);
-  report.descriptors_ms = watch.lap_ms();
-  report.candidates = keypoints.candidates;
-  report.dropped_small_support = keypoints.dropped_small_support;
-  report.dropped_no_frame = descriptors.dropped_no_frame;
-  report.dropped_no_histogram = descriptors.dropped_no_histogram;
-  report.keypoints = static_cast<int>(descriptors.vertices.size());
-  return descriptors;
-}
+/// One pair on its way from meshes to matches.
+class Pipeline {
+ public:
+  Pipeline(const MatchSettings& settings, const StageObserver& observer, MatchReport& report)
+      : settings_(settings), observer_(observer), report_(report), parallel_(workers(settings.threads)) {}
+
+  void measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
+    stage("resolution of the " + side, [&] {
+      mesh.validate(side);
+      report.points = static_cast<int>(mesh.vertices.rows());
+      report.faces = static_cast<int>(mesh.triangles.rows());
+      if (settings_.inspect) report.topology = inspect_topology(mesh);
+      report.resolution = point_resolution(mesh.vertices, parallel_);
+    });
+  }
+
+  Descriptors describe(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
+    Keypoints keypoints;
+    Points normals;
+    Descriptors descriptors;
+    stage("keypoints of the " + side, [&] { keypoints = detect(mesh); });
+    stage("normals of the " + side, [&] {
+      normals = estimate_normals(mesh, {20, settings_.normals == "mesh", Eigen::Vector3d(settings_.sensor.data())},
+                                 parallel_);
+    });
+    stage("descriptors of the " + side, [&] {
+      descriptors = describe_shot(mesh.vertices, normals, keypoints.vertices, report_.resolution,
+                                  {settings_.support_radius_pr, 10, settings_.shot}, parallel_);
+    });
+    report.candidates = keypoints.candidates;
+    report.keypoints = static_cast<int>(keypoints.vertices.size());
+    report.dropped_small_support = descriptors.dropped_small_support;
+    report.dropped_no_frame = descriptors.dropped_no_frame;
+    report.dropped_no_histogram = descriptors.dropped_no_histogram;
+    report.descriptors = static_cast<int>(descriptors.vertices.size());
+    return descriptors;
+  }
+
+  CorrespondenceSet match(const DescribedSurface& source, const DescribedSurface& target) {
+    CorrespondenceSet matches;
+    stage("matching",
+          [&] { matches = make_correspondences(source, target, report_.resolution, settings_.matching, parallel_); });
+    return matches;
+  }
+
+ private:
+  template <class Work>
+  void stage(const std::string& name, const Work& work) {
+    if (observer_) observer_(name);
+    Stopwatch watch;
+    work();
+    report_.stages.push_back({name, watch.lap_ms(), peak_memory_mb()});
+  }
+
+  Keypoints detect(const Mesh& mesh) const {
+    if (settings_.detector == "uniform")
+      return detect_uniform(mesh.vertices, report_.resolution, settings_.keypoint_radius_pr);
+    if (settings_.detector == "harris-mesh") {
+      HarrisMeshOptions options = settings_.harris_mesh;
+      options.radius_pr = settings_.keypoint_radius_pr;
+      return detect_harris_mesh(mesh, report_.resolution, options);
+    }
+    return detect_harris(mesh.vertices, report_.resolution, {settings_.keypoint_radius_pr}, parallel_);
+  }
+
+  const MatchSettings& settings_;
+  const StageObserver& observer_;
+  MatchReport& report_;
+  ParallelFor parallel_;
+};
 
 /// Advice on a radius (in the side's own pr) that is far from the usual one.
 std::string radius_hint(const std::string& what, double radius_pr, double usual_pr) {
@@ -73,9 +122,9 @@ std::string radius_hint(const std::string& what, double radius_pr, double usual_
 
 void add_hints(const MatchReport& report, const MatchSettings& settings, std::vector<std::string>& hints) {
   const auto hint = [&](const SurfaceReport& side, const std::string& name) {
-    if (side.keypoints > 0) return;
+    if (side.descriptors > 0) return;
     const double scale = report.resolution / side.resolution;  // from pr of the pair to the side's own
-    if (side.candidates == 0)
+    if (side.keypoints == 0)
       hints.push_back("no keypoint on the " + name + ": " +
                       radius_hint("keypoint", settings.keypoint_radius_pr * scale, 3) + "a flat surface has none");
     else
@@ -85,40 +134,49 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
   };
   hint(report.source, "source");
   hint(report.target, "target");
+  if (report.matches == 0 && report.source.descriptors > 0 && report.target.descriptors > 0)
+    hints.push_back("no match is mutual: the surfaces may share too little, or leave out --mutual");
+}
+
+void expect_one_of(const std::string& field, const std::string& value, const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : "|") + name;
+  if (std::find(names.begin(), names.end(), value) == names.end())
+    throw InvalidInput("match", field, "'" + value + "'", list);
 }
 
 }  // namespace
 
-void check_resolution_rule(const std::string& rule) {
-  if (rule != "mean" && rule != "source" && rule != "target" && !as_length(rule))
-    throw InvalidInput("match", "resolution", "'" + rule + "'",
+void MatchSettings::validate() const {
+  if (resolution != "mean" && resolution != "source" && resolution != "target" && !as_length(resolution))
+    throw InvalidInput("match", "resolution", "'" + resolution + "'",
                        "mean|source|target or a length above zero in mesh units");
+  expect_one_of("detector", detector, {"harris", "harris-mesh", "uniform"});
+  expect_one_of("normals", normals, {"mesh", "origin"});
+  expect_one_of("shot", shot, {"additive", "pcl", "product"});
+  require_positive("match", "keypoint-radius-pr", keypoint_radius_pr);
+  require_positive("match", "support-radius-pr", support_radius_pr);
+  if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
+    throw InvalidInput("match", "sensor", "not a place", "three finite coordinates x,y,z");
+  if (threads < 0) throw InvalidInput("match", "threads", std::to_string(threads), "at least 0");
+  harris_mesh.validate();
+  matching.validate();
 }
 
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
                        const StageObserver& observer) {
-  check_resolution_rule(settings.resolution);
-  const StageObserver observe = observer ? observer : [](const std::string&) {};
+  settings.validate();
   MatchedPair pair;
   MatchReport& report = pair.report;
-  Stopwatch watch;
-  for (auto [mesh, side, name] : {std::tuple{&source, &report.source, "source"}, {&target, &report.target, "target"}}) {
-    observe(std::string("resolution of the ") + name);
-    mesh->validate(name);
-    side->points = static_cast<int>(mesh->vertices.rows());
-    side->faces = static_cast<int>(mesh->triangles.rows());
-    side->resolution = point_resolution(mesh->vertices);
-    side->resolution_ms = watch.lap_ms();
-  }
+  Pipeline pipeline(settings, observer, report);
+  pipeline.measure(source, "source", report.source);
+  pipeline.measure(target, "target", report.target);
   report.resolution = pair_resolution(settings.resolution, report.source.resolution, report.target.resolution);
   report.keypoint_radius = settings.keypoint_radius_pr * report.resolution;
   report.support_radius = settings.support_radius_pr * report.resolution;
-  const Descriptors on_source = describe(source, "source", report.resolution, settings, report.source, observe);
-  const Descriptors on_target = describe(target, "target", report.resolution, settings, report.target, observe);
-  observe("matching");
-  watch.lap_ms();
-  pair.matches = make_correspondences(source, on_source, target, on_target, report.resolution);
-  report.matching_ms = watch.lap_ms();
+  const Descriptors on_source = pipeline.describe(source, "source", report.source);
+  const Descriptors on_target = pipeline.describe(target, "target", report.target);
+  pair.matches = pipeline.match({source, on_source}, {target, on_target});
   report.matches = pair.matches.size();
   add_hints(report, settings, report.hints);
   return pair;

@@ -7,25 +7,46 @@
 #include <vector>
 
 #include "kernel/correspondence_set.h"
+#include "kernel/surface/feature_matching.h"
+#include "kernel/surface/harris_mesh.h"
 #include "kernel/surface/mesh.h"
+#include "kernel/surface/topology.h"
 
 namespace corral {
 
 /// How one pair of surfaces becomes a table of matches. Defaults: the paper's.
 struct MatchSettings {
   std::string resolution = "mean";  ///< pr of the pair: mean|source|target of the two, or a length in mesh units
-  double keypoint_radius_pr = 3;
-  double support_radius_pr = 15;
+  std::string detector = "harris";  ///< harris | harris-mesh | uniform
+  double keypoint_radius_pr = 3;    ///< of harris; of the ball of harris-mesh; the spacing of uniform
+  HarrisMeshOptions harris_mesh;    ///< its radius is keypoint_radius_pr
+  double support_radius_pr = 15;    ///< of SHOT and its frame
+  std::string normals = "mesh";  ///< mesh: to the side of the faces, else the sensor | origin: all towards the sensor
+  std::vector<double> sensor = {0, 0, 0};  ///< x, y, z in mesh units
+  std::string shot = "additive";           ///< additive | pcl | product
+  MatchingOptions matching;
+  int threads = 0;       ///< 0: as many as the machine has. Results do not depend on it
+  bool inspect = false;  ///< look at the topology of the meshes too
+
+  /// Throws InvalidInput for what is none of these.
+  void validate() const;
 };
 
 /// What happened to one of the two surfaces.
 struct SurfaceReport {
   int points = 0, faces = 0;
-  double resolution = 0;  ///< its own, mesh units per pr
-  int candidates = 0;
+  std::optional<Topology> topology;  ///< if inspected
+  double resolution = 0;             ///< its own, mesh units per pr
+  int candidates = 0;                ///< what the keypoints were selected from
+  int keypoints = 0;                 ///< those that the detector found
   int dropped_small_support = 0, dropped_no_frame = 0, dropped_no_histogram = 0;
-  int keypoints = 0;  ///< described ones: candidates less those dropped
-  double resolution_ms = 0, normals_ms = 0, keypoints_ms = 0, descriptors_ms = 0;
+  int descriptors = 0;  ///< keypoints less those dropped
+};
+
+struct StageCost {
+  std::string stage;
+  double time_ms = 0;         ///< wall time
+  double peak_memory_mb = 0;  ///< the most that the process had held by the end of the stage
 };
 
 struct MatchReport {
@@ -33,7 +54,7 @@ struct MatchReport {
   double resolution = 0;                           ///< of the pair
   double keypoint_radius = 0, support_radius = 0;  ///< mesh units
   int matches = 0;
-  double matching_ms = 0;
+  std::vector<StageCost> stages;
   std::vector<std::string> hints;  ///< what to do about a count that is zero
 };
 
@@ -49,8 +70,5 @@ constexpr int kMatchStages = 9;
 /// resolution -> keypoints -> normals, frames and descriptors of both surfaces -> matches. Throws InvalidInput.
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
                        const StageObserver& observer = {});
-
-/// The text of `resolution` is mean, source, target or a positive length. Throws InvalidInput if it is not.
-void check_resolution_rule(const std::string& rule);
 
 }  // namespace corral

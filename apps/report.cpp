@@ -11,19 +11,27 @@
 namespace corral {
 namespace {
 
+Json to_json(const Topology& topology) {
+  return {{"components", topology.components},
+          {"boundary_edges", topology.boundary_edges},
+          {"duplicates", topology.duplicate_vertices},
+          {"isolated", topology.isolated_vertices},
+          {"degenerate_faces", topology.degenerate_faces},
+          {"misoriented_faces", topology.misoriented_faces},
+          {"non_manifold_faces", topology.non_manifold_faces}};
+}
+
 Json to_json(const SurfaceReport& report) {
   return {{"points", report.points},
           {"faces", report.faces},
+          {"topology", report.topology ? to_json(*report.topology) : Json(nullptr)},
           {"resolution", report.resolution},
           {"candidates", report.candidates},
+          {"keypoints", report.keypoints},
           {"dropped_small_support", report.dropped_small_support},
           {"dropped_no_frame", report.dropped_no_frame},
           {"dropped_no_histogram", report.dropped_no_histogram},
-          {"keypoints", report.keypoints},
-          {"resolution_ms", report.resolution_ms},
-          {"keypoints_ms", report.keypoints_ms},
-          {"normals_ms", report.normals_ms},
-          {"descriptors_ms", report.descriptors_ms}};
+          {"descriptors", report.descriptors}};
 }
 
 /// The members that a pose against the truth has; null where it has none.
@@ -40,14 +48,28 @@ void add_errors(Json& json, const std::optional<PoseErrors>& errors) {
   json["mean_error_pr"] = json_or_null(mean);
 }
 
-std::string surface_line(const char* name, const SurfaceReport& side) {
-  return std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) +
-         " faces, pr " + to_text(side.resolution) + "; " + std::to_string(side.candidates) + " keypoints, dropped " +
-         std::to_string(side.dropped_small_support) + " with fewer than 10 neighbours, " +
-         std::to_string(side.dropped_no_frame) + " without a frame, " + std::to_string(side.dropped_no_histogram) +
-         " without a histogram; " + std::to_string(side.keypoints) + " described (" + fixed(side.resolution_ms, 0) +
-         " + " + fixed(side.keypoints_ms, 0) + " + " + fixed(side.normals_ms, 0) + " + " +
-         fixed(side.descriptors_ms, 0) + " ms for resolution, keypoints, normals, descriptors)\n";
+/// The counts that are not zero, or nothing.
+std::string oddities(const Topology& topology) {
+  std::string text;
+  for (const auto& [count, what] : {std::pair{topology.duplicate_vertices, "duplicate vertices"},
+                                    {topology.isolated_vertices, "isolated vertices"},
+                                    {topology.degenerate_faces, "faces without area"},
+                                    {topology.misoriented_faces, "misoriented faces"},
+                                    {topology.non_manifold_faces, "non-manifold faces"}})
+    if (count > 0) text += ", " + std::to_string(count) + " " + what;
+  return text;
+}
+
+std::string surface_lines(const char* name, const SurfaceReport& side) {
+  std::string text = std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) +
+                     " faces" + (side.faces == 0 ? " (a cloud: normals towards the sensor)" : "");
+  if (side.topology && side.faces > 0) text += ", " + std::to_string(side.topology->components) + " components";
+  if (side.topology) text += oddities(*side.topology);
+  return text + ", pr " + to_text(side.resolution) + "\n  " + std::to_string(side.keypoints) + " keypoints of " +
+         std::to_string(side.candidates) + " candidates, dropped " + std::to_string(side.dropped_small_support) +
+         " with fewer than 10 neighbours, " + std::to_string(side.dropped_no_frame) + " without a frame, " +
+         std::to_string(side.dropped_no_histogram) + " without a histogram; " + std::to_string(side.descriptors) +
+         " described\n";
 }
 
 /// What a row of the table of methods holds, in its order, with so many decimals for people (-1: a whole number).
@@ -84,10 +106,37 @@ Json to_json(const RigidTransform& transform) {
 }
 
 Json to_json(const MatchReport& report) {
-  return {{"resolution", report.resolution},         {"keypoint_radius", report.keypoint_radius},
-          {"support_radius", report.support_radius}, {"source", to_json(report.source)},
-          {"target", to_json(report.target)},        {"matches", report.matches},
-          {"matching_ms", report.matching_ms},       {"hints", report.hints}};
+  Json stages = Json::array();
+  for (const StageCost& cost : report.stages)
+    stages.push_back({{"stage", cost.stage}, {"time_ms", cost.time_ms}, {"peak_memory_mb", cost.peak_memory_mb}});
+  return {{"resolution", report.resolution},
+          {"keypoint_radius", report.keypoint_radius},
+          {"support_radius", report.support_radius},
+          {"source", to_json(report.source)},
+          {"target", to_json(report.target)},
+          {"matches", report.matches},
+          {"stages", stages},
+          {"hints", report.hints}};
+}
+
+Json to_json(const MatchSettings& settings) {
+  Json json = {{"resolution_rule", settings.resolution},
+               {"detector", settings.detector},
+               {"keypoint_radius_pr", settings.keypoint_radius_pr},
+               {"support_radius_pr", settings.support_radius_pr},
+               {"normals", settings.normals},
+               {"sensor", settings.sensor},
+               {"shot", settings.shot},
+               {"matcher", settings.matching.matcher},
+               {"mutual", settings.matching.mutual}};
+  if (settings.detector == "harris-mesh")
+    json["harris_mesh"] = {{"neighborhood", settings.harris_mesh.neighborhood},
+                           {"rings", settings.harris_mesh.rings},
+                           {"extent", settings.harris_mesh.extent},
+                           {"selection", settings.harris_mesh.selection},
+                           {"fraction", settings.harris_mesh.fraction},
+                           {"separation", settings.harris_mesh.separation}};
+  return json;
 }
 
 Json to_json(const GroupingScore& score) {
@@ -144,11 +193,16 @@ Json to_json(const std::vector<OptionValue>& options) {
 }
 
 std::string stage_report(const MatchReport& report) {
-  std::string text = surface_line("source", report.source) + surface_line("target", report.target) + "pair: pr " +
+  std::string text = surface_lines("source", report.source) + surface_lines("target", report.target) + "pair: pr " +
                      to_text(report.resolution) + ", keypoint radius " + to_text(report.keypoint_radius) +
                      ", support radius " + to_text(report.support_radius) + " mesh units; " +
-                     std::to_string(report.matches) + " matches in " + fixed(report.matching_ms, 0) + " ms";
-  for (const std::string& hint : report.hints) text += "\nhint: " + hint;
+                     std::to_string(report.matches) + " matches\n";
+  TextTable table({"stage", "time ms", "peak memory MB"});
+  for (const StageCost& cost : report.stages)
+    table.add({cost.stage, fixed(cost.time_ms, 1), fixed(cost.peak_memory_mb, 1)});
+  text += table.str();
+  for (const std::string& hint : report.hints) text += "hint: " + hint + "\n";
+  text.pop_back();
   return text;
 }
 

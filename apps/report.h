@@ -20,6 +20,7 @@ Json json_or_null(const std::optional<Value>& value) {
 
 Json to_json(const RigidTransform& transform);  ///< four rows of four
 Json to_json(const MatchReport& report);
+Json to_json(const MatchSettings& settings);  ///< what results depend on
 Json to_json(const GroupingScore& score);
 Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors);
 Json to_json(const MethodRecord& record);

@@ -48,6 +48,22 @@ GroupingScore score_grouping(const std::vector<bool>& labels, const Indices& sel
   return score;
 }
 
+std::optional<double> FrameRepeatability::share() const { return ratio(agreeing, compared); }
+
+FrameRepeatability frame_repeatability(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
+                                       const std::vector<bool>& labels, double limit_deg) {
+  FrameRepeatability found;
+  if (matches.source_frames.empty() || matches.target_frames.empty()) return found;
+  for (std::size_t row = 0; row < labels.size(); ++row) {
+    const LocalReferenceFrame &source = matches.source_frames[row], &target = matches.target_frames[row];
+    if (!labels[row] || !is_valid_frame(source) || !is_valid_frame(target)) continue;
+    ++found.compared;
+    const RigidTransform between{target.transpose() * source, Eigen::Vector3d::Zero()};
+    found.agreeing += rotation_error_deg(between, target_from_source) <= limit_deg;
+  }
+  return found;
+}
+
 double rotation_error_deg(const RigidTransform& estimate, const RigidTransform& truth) {
   const Eigen::Matrix3d difference = estimate.rotation * truth.rotation.transpose();
   const Eigen::Vector3d twice_sine_axis(difference(2, 1) - difference(1, 2), difference(0, 2) - difference(2, 0),

@@ -30,6 +30,17 @@ struct GroupingScore {
 /// Throws    InvalidInput if a selected row is out of range or the rows do not ascend strictly.
 GroupingScore score_grouping(const std::vector<bool>& labels, const Indices& selected);
 
+/// How often the local frames of right matches follow the surface: what methods that trust frames live on.
+struct FrameRepeatability {
+  int compared = 0;  ///< right matches with a frame on both sides
+  int agreeing = 0;  ///< of these, frames that the true rotation brings within the limit of each other
+  std::optional<double> share() const;
+};
+
+/// The limit is on the angle between the frames, in degrees (10 in the field). Nothing is compared without frame columns.
+FrameRepeatability frame_repeatability(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
+                                       const std::vector<bool>& labels, double limit_deg = 10);
+
 /// Angle of estimate * truth^-1 in degrees, 0 .. 180; accurate near both ends (no arc cosine of a trace).
 double rotation_error_deg(const RigidTransform& estimate, const RigidTransform& truth);
 

@@ -34,7 +34,7 @@ const std::map<std::string, Room> kRooms = {
     {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
     {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
     {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen"}}},
-    {"apps", {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"}, {"Eigen", "CLI", "nlohmann"}}},
+    {"apps", {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"}, {"Eigen", "CLI", "nlohmann", "oneapi"}}},
 };
 const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing

@@ -19,8 +19,9 @@ struct Settings {
   bool json = false, verbose = false;
 };
 
-int match(const Settings& settings) {
+int match(Settings settings) {
   check_usage(settings.match);
+  settings.match.inspect = settings.verbose || settings.json;
   if (!settings.output.empty()) check_writable(settings.output);
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   MatchedPair pair;
@@ -53,26 +54,42 @@ Mesh read_surface(const std::string& path) {
 }
 
 void add_match_options(CLI::App& command, MatchSettings& settings) {
-  command
-      .add_option("--resolution", settings.resolution,
-                  "pr of the pair: mean, source, target, or a length in mesh units")
-      ->capture_default_str();
-  command.add_option("--keypoint-radius-pr", settings.keypoint_radius_pr, "Radius of Harris 3D and its suppression")
-      ->capture_default_str();
-  command.add_option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame")
-      ->capture_default_str();
+  const auto option = [&](const std::string& name, auto& value, const std::string& text) {
+    return command.add_option(name, value, text)->capture_default_str()->group("Matching");
+  };
+  option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units");
+  option("--detector", settings.detector,
+         "harris (on the points), harris-mesh (on the faces), or uniform (a control: one vertex per cube)");
+  option("--keypoint-radius-pr", settings.keypoint_radius_pr,
+         "Radius of harris and its suppression, of the ball of harris-mesh; spacing of uniform");
+  option("--mesh-neighborhood", settings.harris_mesh.neighborhood, "harris-mesh: adaptive, rings or ball");
+  option("--mesh-rings", settings.harris_mesh.rings, "harris-mesh: edges to the rim of its rings");
+  option("--mesh-extent", settings.harris_mesh.extent, "harris-mesh: reach of adaptive, a share of the diagonal");
+  option("--mesh-selection", settings.harris_mesh.selection, "harris-mesh: fraction or clustering");
+  option("--mesh-fraction", settings.harris_mesh.fraction, "harris-mesh: share of the vertices that fraction keeps");
+  option("--mesh-separation", settings.harris_mesh.separation,
+         "harris-mesh: least distance in clustering, a share of the diagonal");
+  option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame");
+  option("--normals", settings.normals,
+         "mesh: to the side of the faces, of a cloud towards the sensor; origin: all towards the sensor");
+  option("--sensor", settings.sensor, "Where the sensor stood, in mesh units")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  option("--shot", settings.shot, "Shares between bins: additive, product, or pcl (additive with that library's slip)");
+  option("--matcher", settings.matching.matcher,
+         "exact, or flann (approximate, not reproducible, for very many features)");
+  command.add_flag("--mutual", settings.matching.mutual, "Keep a match only if each side is the nearest of the other")
+      ->group("Matching");
+  option("--threads", settings.threads, "0: as many as there are; results do not depend on it");
 }
 
 void check_usage(const MatchSettings& settings) {
   try {
-    check_resolution_rule(settings.resolution);
+    settings.validate();
   } catch (const InvalidInput& error) {
     throw UsageError(error.what());
   }
-  for (const auto& [option, radius] : {std::pair{"--keypoint-radius-pr", settings.keypoint_radius_pr},
-                                       std::pair{"--support-radius-pr", settings.support_radius_pr}})
-    if (!(radius > 0) || !std::isfinite(radius))
-      throw UsageError(std::string(option) + ": expected a finite length above zero");
 }
 
 void add_match(CLI::App& app, Action& action) {
@@ -87,7 +104,8 @@ void add_match(CLI::App& app, Action& action) {
   add_match_options(*command, settings->match);
   command->footer(
       "Examples:\n  corral match model.ply scene.ply -o matches.csv\n"
-      "  corral match model.ply scene.ply --json -o matches.csv");
+      "  corral match model.ply scene.ply -v --json -o matches.csv\n"
+      "  corral match model.ply scene.ply --detector harris-mesh --mesh-neighborhood rings --mutual -o matches.csv");
   command->callback([settings, &action] { action = [settings] { return match(*settings); }; });
 }
 

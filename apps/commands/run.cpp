@@ -49,10 +49,11 @@ struct PairRun {
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
+  std::vector<bool> labels;                  ///< with a truth: which matches are right
+  std::optional<FrameRepeatability> frames;  ///< with a truth
 
   std::optional<int> true_matches() const {
     if (!truth) return std::nullopt;
-    const auto labels = label_inliers(pair.matches, truth->target_from_source, truth->threshold_pr);
     return static_cast<int>(std::count(labels.begin(), labels.end(), true));
   }
 };
@@ -68,11 +69,10 @@ Json to_json(const PairRun& run, const Settings& settings) {
           {"resolution", run.pair.report.resolution},
           {"matches", run.pair.matches.size()},
           {"true_matches", json_or_null(run.true_matches())},
+          {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
           {"methods", methods},
           {"details",
-           {{"resolution_rule", settings.match.resolution},
-            {"keypoint_radius_pr", settings.match.keypoint_radius_pr},
-            {"support_radius_pr", settings.match.support_radius_pr},
+           {{"matching", corral::to_json(settings.match)},
             {"threshold_pr", settings.threshold_pr},
             {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
             {"repeat", settings.repeat},
@@ -120,6 +120,8 @@ PairRun evaluate(const Settings& settings) {
     progress.begin("overlap");
     run.truth->overlap = overlap_points(source.vertices, PointIndex(target.vertices), run.truth->target_from_source,
                                         kOverlapPr * run.pair.report.resolution);
+    run.labels = label_inliers(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
+    run.frames = frame_repeatability(run.pair.matches, run.truth->target_from_source, run.labels);
   }
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
     progress.begin(run.methods[i]);
@@ -136,11 +138,14 @@ std::string heading(const PairRun& run, const Settings& settings) {
     text += ", " + std::to_string(*right) + " right within " + fixed(settings.threshold_pr, 1) + " pr; overlap " +
             std::to_string(run.truth->overlap.rows()) + " of " + std::to_string(run.pair.report.source.points) +
             " points";
+  if (run.frames && run.frames->compared > 0)
+    text += "; frames of " + fixed(100 * *run.frames->share(), 1) + " % of the right matches agree within 10 degrees";
   return text + "\n";
 }
 
-int run_pair(const Settings& settings) {
+int run_pair(Settings settings) {
   check_usage(settings.match);
+  settings.match.inspect = settings.verbose;
   check_threshold(settings.threshold_pr);
   if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
   const PairRun run = evaluate(settings);

@@ -1,27 +1,48 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 #include "kernel/correspondence_set.h"
+#include "kernel/parallel.h"
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/mesh.h"
 
 namespace corral {
 
-/// The two nearest target features of every source feature.
+struct MatchingOptions {
+  std::string matcher = "exact";  ///< exact | flann: randomised trees, faster for very many features
+  bool mutual = false;            ///< keep a match only if each side is the nearest of the other
+
+  /// Throws InvalidInput.
+  void validate() const;
+};
+
+/// The two nearest target features of source features.
 struct FeatureMatches {
-  Indices nearest;                  ///< column of the target features, per source feature
+  Indices source;                   ///< column of the source features, ascending; all of them unless mutual
+  Indices nearest;                  ///< column of the target features
   Eigen::VectorXd distance;         ///< L2 to it
   Eigen::VectorXd second_distance;  ///< L2 to the second nearest, 0 where there is only one target feature
 };
 
-/// Exact L2 matching: one row per source feature (columns of D x N and D x M). Ties go to the lower target column.
-/// Nothing is returned if either side is empty.
-/// Cost      O(N M D) time, as blocked matrix products; the few nearest are measured again, difference by difference.
-FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target);
+/// L2 matching of the columns of D x N and D x M. `exact`: ties go to the lower target column, and any number of threads
+/// gives the same bits. `flann` is approximate and **not reproducible**: its trees take their seeds from the system; the
+/// distances to what it finds are exact. Nothing is returned if either side is empty.
+/// Throws    InvalidInput for a matcher that is not above.
+FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
+                              const MatchingOptions& options = {}, const ParallelFor& parallel = one_by_one);
 
-/// The table of matches of two described surfaces: row i is source keypoint i and its nearest target keypoint. Several
-/// rows may share a target; no mutual check, no cut.
-CorrespondenceSet make_correspondences(const Mesh& source, const Descriptors& source_descriptors, const Mesh& target,
-                                       const Descriptors& target_descriptors, double resolution);
+/// A described surface.
+struct DescribedSurface {
+  const Mesh& mesh;
+  const Descriptors& descriptors;
+};
+
+/// The table of matches of two described surfaces: a row per source keypoint, in their order, with its nearest target
+/// keypoint. Several rows may share a target, unless mutual; there is no cut.
+CorrespondenceSet make_correspondences(const DescribedSurface& source, const DescribedSurface& target,
+                                       double resolution, const MatchingOptions& options = {},
+                                       const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

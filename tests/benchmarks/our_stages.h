@@ -15,23 +15,17 @@ namespace corral::ours {
 
 inline double resolution(const Mesh& mesh) { return point_resolution(mesh.vertices); }
 
-inline Points normals(const Mesh& mesh) { return estimate_normals(mesh, PointIndex(mesh.vertices)); }
+inline Points normals(const Mesh& mesh) { return estimate_normals(mesh); }
 
 inline Indices harris(const Mesh& mesh, double resolution, double radius_pr = 3) {
-  return detect_harris(mesh, PointIndex(mesh.vertices), resolution, {radius_pr, 15, 10}).vertices;
+  return detect_harris(mesh.vertices, resolution, {radius_pr}).vertices;
 }
 
 /// The response of every vertex.
-inline Eigen::VectorXd response(const Mesh& mesh, double radius) {
-  const PointIndex index(mesh.vertices);
-  std::vector<std::vector<Neighbor>> neighborhoods;
-  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
-    neighborhoods.push_back(index.within(mesh.vertices.row(row).transpose(), radius));
-  return harris_response(mesh.vertices, neighborhoods);
-}
+inline Eigen::VectorXd response(const Mesh& mesh, double radius) { return harris_response(mesh.vertices, radius); }
 
 inline Descriptors shot(const Mesh& mesh, const Points& normals, const Indices& keypoints, double resolution) {
-  return describe_shot(mesh, normals, PointIndex(mesh.vertices), keypoints, resolution);
+  return describe_shot(mesh.vertices, normals, keypoints, resolution);
 }
 
 inline FeatureMatches matching(const Descriptors& source, const Descriptors& target) {
