@@ -81,7 +81,7 @@ class SupportFinder {
          {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
       if (column->size() < most) column->resize(2 * most);
     collect(slot, ranges, support);
-    pad(support);
+    measure(support);
   }
 
  private:
@@ -90,22 +90,34 @@ class SupportFinder {
   int slot_of(int vertex) const { return slots_[static_cast<std::size_t>(vertex)]; }
 
   void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
+    thread_local std::vector<int> inside;
     const double x = grid_.x()[slot], y = grid_.y()[slot], z = grid_.z()[slot], squared = squared_;
+    if (inside.size() < support.x.size()) inside.resize(support.x.size());
     std::size_t count = 0;
-    for (const SlotRange& range : ranges)
-      for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
-        // Written always, kept if inside: a branch would be guessed wrong for half of them.
-        const double dx = grid_.x()[i] - x, dy = grid_.y()[i] - y, dz = grid_.z()[i] - z;
-        const double distance = dx * dx + dy * dy + dz * dz;
-        support.x[count] = dx, support.y[count] = dy, support.z[count] = dz, support.distance[count] = distance;
-        support.nx[count] = nx_[i], support.ny[count] = ny_[i], support.nz[count] = nz_[i];
-        count += static_cast<std::size_t>((distance <= squared) & (distance > 0));
-      }
+    vectorized([&](auto kind) {
+      using Lanes = typename decltype(kind)::Lanes;
+      const SlotRange* const first = ranges.data();
+      visit_within<Lanes>(grid_, first, first + ranges.size(), x, y, z, squared,
+                          [&](auto within, Lanes dx, Lanes dy, Lanes dz, std::size_t at) {
+                            double distances[kLanes];
+                            select(within, dx * dx + dy * dy + dz * dz, Lanes::fill(0)).store(distances);
+                            // Written always, kept if inside: a branch would be guessed wrong for half of them.
+                            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                              inside[count] = static_cast<int>(at + lane);
+                              count += distances[lane] > 0 ? 1 : 0;
+                            }
+                          });
+    });
+    for (std::size_t at = 0; at < count; ++at) {
+      const auto i = static_cast<std::size_t>(inside[at]);
+      support.x[at] = grid_.x()[i] - x, support.y[at] = grid_.y()[i] - y, support.z[at] = grid_.z()[i] - z;
+      support.nx[at] = nx_[i], support.ny[at] = ny_[i], support.nz[at] = nz_[i];
+    }
     support.count = static_cast<int>(count);
   }
 
-  /// Roots of the distances, and nothing in the padding.
-  static void pad(Support& support) {
+  /// The distances, and nothing in the padding.
+  static void measure(Support& support) {
     const auto count = static_cast<std::size_t>(support.count), end = static_cast<std::size_t>(padded(support.count));
     for (AlignedColumn* column :
          {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
@@ -113,8 +125,10 @@ class SupportFinder {
                 column->begin() + static_cast<std::ptrdiff_t>(end), 0.0);
     vectorized([&](auto kind) {
       using Lanes = typename decltype(kind)::Lanes;
-      for (std::size_t i = 0; i < end; i += kLanes)
-        square_root(Lanes::load(&support.distance[i])).store(&support.distance[i]);
+      for (std::size_t i = 0; i < end; i += kLanes) {
+        const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
+        square_root(x * x + y * y + z * z).store(&support.distance[i]);
+      }
     });
   }
 

@@ -68,20 +68,30 @@ class NearestPlanes {
   template <class Lanes>
   CORRAL_INLINE bool fit(std::size_t slot, const SlotRange* first, const SlotRange* last, double sure_squared) {
     thread_local AlignedColumn squares;
+    thread_local double hint = 1;  // where to look first; what is found does not depend on it
     measure<Lanes>(first, last, slot, squares);
-    double low = -1, high = std::min(sure_squared, std::numeric_limits<double>::max());
-    int at_high = count_within<Lanes>(squares, high), at_low = 0;
-    if (at_high < k_) return false;
-    // On a surface the points within a distance grow as its square: a few guesses part the k nearest from the others.
-    for (int guess = 0; guess < kGuesses && at_high != k_; ++guess) {
-      const double from = std::max(low, 0.0);
-      const double limit = from + (high - from) * (k_ + 0.5 - at_low) / (at_high - at_low + 1);
+    // Below `low` there are too few, up to `high` enough. Neighbours have neighbours about as far away, and on a surface
+    // the points within a distance grow as its square: a few guesses part the k nearest from the others.
+    const double sure = std::min(sure_squared, std::numeric_limits<double>::max());
+    double low = -1, high = sure, limit = std::min(sure, hint);
+    int at_low = 0, at_high = -1;
+    for (int guess = 0; guess < kGuesses || at_high < 0; ++guess) {
       const int count = count_within<Lanes>(squares, limit);
-      if (count < k_)
-        low = limit, at_low = count;
-      else
+      if (count >= k_) {
         high = limit, at_high = count;
+        if (count == k_) break;
+      } else {
+        if (!(limit < sure)) return false;
+        low = limit, at_low = count;
+      }
+      if (at_high > 0) {
+        const double from = std::max(low, 0.0);
+        limit = from + (high - from) * (k_ + 0.5 - at_low) / (at_high - at_low + 1);
+      } else {
+        limit = guess < kGuesses ? std::min(sure, 1.1 * limit * (k_ + 0.5) / (count + 0.5)) : sure;
+      }
     }
+    hint = high;
     // What is left goes from one distance to the next.
     while (at_high != k_ && at_low < k_) {
       const double next = next_above<Lanes>(squares, low);

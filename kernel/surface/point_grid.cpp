@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -15,26 +16,27 @@ namespace {
 constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
 constexpr double kMostCells = 4e18;                         // keys are 63 bits
 
-/// A point on its way to its place.
-struct Keyed {
-  std::int64_t key;
-  int row;
+/// The cell of every point as one number, ascending by z, then y, then x.
+struct CellKeys {
+  std::vector<std::int64_t> keys;
+  std::int64_t row_step = 1, layer_step = 1;
 };
 
-/// Cell coordinates along one axis.
-std::vector<std::int64_t> cell_coordinates(const Eigen::Ref<const Eigen::VectorXd>& values, double corner,
-                                           double side) {
-  std::vector<std::int64_t> cells(static_cast<std::size_t>(values.size()));
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const double cell = (values(static_cast<Eigen::Index>(i)) - corner) / side;
-    cells[i] = cell < 4e18 ? static_cast<std::int64_t>(cell) : 0;  // extents that are not finite have no cells
+/// Cells along one axis.
+struct Axis {
+  const double* values;
+  double corner, side;
+  std::int64_t cell(std::size_t i) const {
+    const double place = (values[i] - corner) / side;
+    return place < 4e18 ? static_cast<std::int64_t>(place) : 0;  // extents that are not finite have no cells
   }
-  return cells;
-}
+};
 
 /// Far outliers make more cells than keys can count: empty stretches are cut to the reach of a search, which no search can
 /// tell.
-void close_gaps(std::vector<std::int64_t>& cells) {
+std::vector<std::int64_t> cells_without_gaps(const Axis& axis, std::size_t count) {
+  std::vector<std::int64_t> cells(count);
+  for (std::size_t i = 0; i < count; ++i) cells[i] = axis.cell(i);
   std::vector<std::int64_t> taken = cells;
   std::sort(taken.begin(), taken.end());
   taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
@@ -43,26 +45,77 @@ void close_gaps(std::vector<std::int64_t>& cells) {
     closed[i] = closed[i - 1] + std::min<std::int64_t>(taken[i] - taken[i - 1], PointGrid::kLargestReach + 1);
   for (std::int64_t& cell : cells)
     cell = closed[static_cast<std::size_t>(std::lower_bound(taken.begin(), taken.end(), cell) - taken.begin())];
+  return cells;
 }
 
-/// Least significant digits first; digits that all keys share cost a look.
-void radix_sort(std::vector<Keyed>& items) {
+/// Keys from cells along the axes, of which there are so many; nothing if that is too many.
+template <class Cell>
+std::optional<CellKeys> combine(const std::array<std::int64_t, 3>& largest, std::size_t count, const Cell& cell) {
+  std::array<std::int64_t, 3> steps;
+  double product = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    steps[axis] = largest[axis] + 1 + 2 * kMargin;
+    product *= static_cast<double>(steps[axis]);
+  }
+  if (!(product <= kMostCells)) return std::nullopt;
+  CellKeys result{std::vector<std::int64_t>(count), steps[0], steps[0] * steps[1]};
+  for (std::size_t i = 0; i < count; ++i)
+    result.keys[i] =
+        (cell(2, i) + kMargin) * result.layer_step + (cell(1, i) + kMargin) * result.row_step + cell(0, i) + kMargin;
+  return result;
+}
+
+/// Numbers the cells; `side` grows in the rare case that even without gaps there are too many.
+CellKeys number_cells(const Points& points, const Eigen::RowVector3d& corner, double& side) {
+  const auto count = static_cast<std::size_t>(points.rows());
+  std::array<std::size_t, 3> last;  // the point with the largest coordinate
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Eigen::Index row = 0;
+    points.col(static_cast<Eigen::Index>(axis)).maxCoeff(&row);
+    last[axis] = static_cast<std::size_t>(row);
+  }
+  for (;; side *= 2) {
+    std::array<Axis, 3> axes;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      axes[static_cast<std::size_t>(axis)] = {points.col(axis).data(), corner(axis), side};
+    const auto direct = combine({axes[0].cell(last[0]), axes[1].cell(last[1]), axes[2].cell(last[2])}, count,
+                                [&](std::size_t axis, std::size_t i) { return axes[axis].cell(i); });
+    if (direct) return *direct;
+    std::array<std::vector<std::int64_t>, 3> closed;
+    for (std::size_t axis = 0; axis < 3; ++axis) closed[axis] = cells_without_gaps(axes[axis], count);
+    const auto compact = combine({closed[0][last[0]], closed[1][last[1]], closed[2][last[2]]}, count,
+                                 [&](std::size_t axis, std::size_t i) { return closed[axis][i]; });
+    if (compact) return *compact;
+  }
+}
+
+/// Sorts by key(item), least significant digits first; digits that all keys share cost a look.
+template <class Item, class Key>
+void radix_sort(std::vector<Item>& items, const Key& key) {
   constexpr int kBits = 11;
   constexpr std::size_t kBuckets = std::size_t{1} << kBits;
-  std::vector<Keyed> other(items.size());
+  std::vector<Item> other(items.size());
   std::int64_t all = 0;
-  for (const Keyed& item : items) all |= item.key;
+  for (const Item& item : items) all |= key(item);
   for (int shift = 0; shift < 63 && (all >> shift) != 0; shift += kBits) {
-    const auto digit = [shift](const Keyed& item) {
-      return static_cast<std::size_t>(item.key >> shift) & (kBuckets - 1);
-    };
+    const auto digit = [&](const Item& item) { return static_cast<std::size_t>(key(item) >> shift) & (kBuckets - 1); };
     std::array<std::size_t, kBuckets> places{};
-    for (const Keyed& item : items) ++places[digit(item)];
+    for (const Item& item : items) ++places[digit(item)];
     std::size_t next = 0;
     for (std::size_t& place : places) next += std::exchange(place, next);
-    for (const Keyed& item : items) other[places[digit(item)]++] = item;
+    for (const Item& item : items) other[places[digit(item)]++] = item;
     items.swap(other);
   }
+}
+
+std::size_t count_cells(std::vector<std::int64_t> keys) {
+  radix_sort(keys, [](std::int64_t key) { return key; });
+  return static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+}
+
+/// Coordinates far from the corner have no finer places than this.
+double finest_side(const Points& points, const Eigen::RowVector3d& corner) {
+  return std::max((points.colwise().maxCoeff() - corner).maxCoeff() * 1e-15, std::numeric_limits<double>::min());
 }
 
 }  // namespace
@@ -73,47 +126,33 @@ PointGrid::PointGrid(const Points& points, double cell_side) : side_(cell_side) 
     return;
   }
   corner_ = points.colwise().minCoeff();
-  // Cell coordinates must fit into 62 bits each, and doubles far from the corner have no finer places anyway.
-  side_ = std::max(side_, (points.colwise().maxCoeff() - corner_).maxCoeff() * 1e-15);
-  side_ = std::max(side_, std::numeric_limits<double>::min());
+  side_ = std::max(side_, finest_side(points, corner_));
   sort_into_cells(points);
 }
 
 void PointGrid::sort_into_cells(const Points& points) {
-  std::array<std::vector<std::int64_t>, 3> cells;
-  std::array<std::int64_t, 3> counts;
-  const auto measure = [&] {
-    double product = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      counts[axis] = *std::max_element(cells[axis].begin(), cells[axis].end()) + 1 + 2 * kMargin;
-      product *= static_cast<double>(counts[axis]);
-    }
-    return product;
+  struct Item {
+    std::int64_t key;
+    double x;
+    int row;
   };
-  for (;; side_ *= 2) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto column = static_cast<Eigen::Index>(axis);
-      cells[axis] = cell_coordinates(points.col(column), corner_(column), side_);
-    }
-    if (measure() <= kMostCells) break;
-    for (auto& coordinates : cells) close_gaps(coordinates);
-    if (measure() <= kMostCells) break;
+  std::vector<Item> items(static_cast<std::size_t>(points.rows()));
+  {
+    const CellKeys cells = number_cells(points, corner_, side_);
+    row_step_ = cells.row_step;
+    layer_step_ = cells.layer_step;
+    for (std::size_t i = 0; i < items.size(); ++i)
+      items[i] = {cells.keys[i], points(static_cast<Eigen::Index>(i), 0), static_cast<int>(i)};
   }
-  row_step_ = counts[0];
-  layer_step_ = counts[0] * counts[1];
-
-  std::vector<Keyed> items(static_cast<std::size_t>(points.rows()));
-  for (std::size_t i = 0; i < items.size(); ++i)
-    items[i] = {(cells[2][i] + kMargin) * layer_step_ + (cells[1][i] + kMargin) * row_step_ + cells[0][i] + kMargin,
-                static_cast<int>(i)};
-  radix_sort(items);
-  const auto key = [&](const Keyed& item) {
-    return std::make_tuple(points(item.row, 0), points(item.row, 1), points(item.row, 2), item.row);
+  radix_sort(items, [](const Item& item) { return item.key; });
+  const auto rest = [&](const Item& item) {
+    return std::make_tuple(points(item.row, 1), points(item.row, 2), item.row);
   };
   for (auto first = items.begin(); first != items.end();) {
     auto last = first;
     while (last != items.end() && last->key == first->key) ++last;
-    std::sort(first, last, [&](const Keyed& a, const Keyed& b) { return key(a) < key(b); });
+    std::sort(first, last,
+              [&](const Item& a, const Item& b) { return a.x < b.x || (a.x == b.x && rest(a) < rest(b)); });
     keys_.push_back(first->key);
     begins_.push_back(static_cast<int>(first - items.begin()));
     first = last;
@@ -127,13 +166,13 @@ void PointGrid::sort_into_cells(const Points& points) {
 }
 
 PointGrid PointGrid::with_occupancy(const Points& points, double occupancy) {
-  const double count = static_cast<double>(std::max<Eigen::Index>(points.rows(), 1));
-  const double extent = bounding_box_diagonal(points);
-  PointGrid grid(points, extent > 0 ? extent / std::sqrt(count / occupancy) : 1);
+  if (points.rows() == 0) return PointGrid(points, 1);
+  const auto count = static_cast<double>(points.rows());
+  const Eigen::RowVector3d corner = points.colwise().minCoeff();
+  double side = std::max(bounding_box_diagonal(points) / std::sqrt(count / occupancy), finest_side(points, corner));
   // On a surface the points in a cell grow as the square of its side.
-  const double found = count / std::max(grid.cells(), 1);
-  if (found > 0.7 * occupancy && found < 1.5 * occupancy) return grid;
-  return PointGrid(points, grid.cell_side() * std::sqrt(occupancy / found));
+  const double found = count / static_cast<double>(count_cells(number_cells(points, corner, side).keys));
+  return PointGrid(points, side * std::sqrt(occupancy / found));
 }
 
 int PointGrid::cell_of(int slot) const {

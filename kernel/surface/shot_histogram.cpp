@@ -13,13 +13,14 @@ constexpr int kCosines = 11;
 constexpr int kAbove = kCosines, kShell = 2 * kAbove, kSector = 2 * kShell;  // steps in the order of the bins
 constexpr int kLost = kShotSize;                                             // where shares go that nobody gets
 
-/// Eight vertices: the bin that each lies in, and per axis the bin beside and the share that it gets.
+/// Some vertices: the bin that each lies in, and per axis the bin beside and the share that it gets.
 struct Votes {
-  static constexpr int kAxes = 4;
-  alignas(64) std::int32_t own[kLanes];
-  alignas(64) std::int32_t beside[kAxes][kLanes];
-  alignas(64) double share[kAxes][kLanes];
-  alignas(64) double counts[kLanes];  // 1, or 0 for a vertex without a normal
+  static constexpr int kAxes = 4, kMost = 128;
+  alignas(64) std::int32_t own[kMost];
+  alignas(64) std::int32_t beside[kAxes][kMost];
+  alignas(64) double share[kAxes][kMost];
+  alignas(64) double rest[kMost];    // what the own bin gets of the four axes
+  alignas(64) double counts[kMost];  // 1, or 0 for a vertex without a normal
 };
 
 /// The angle whose tangent is small / big (0 <= small <= big), in units of 45 degrees; 0 where both are 0.
@@ -48,7 +49,8 @@ CORRAL_INLINE Lanes rounded(const Lanes& number) {
 
 /// Azimuth: sectors of 45 degrees from -180, each with its upper border.
 template <class Lanes>
-CORRAL_INLINE Lanes vote_azimuth(const Lanes& x, const Lanes& y, const Lanes& home_in_sector, Votes& votes) {
+CORRAL_INLINE Lanes vote_azimuth(const Lanes& x, const Lanes& y, const Lanes& home_in_sector, Lanes& share,
+                                 std::int32_t* beside) {
   const auto fill = [](double number) { return Lanes::fill(number); };
   const Lanes zero = fill(0), ax = magnitude(x), ay = magnitude(y), big = select(ax <= ay, ay, ax);
   const Lanes turned = octants(smaller(ax, ay), big);
@@ -62,27 +64,26 @@ CORRAL_INLINE Lanes vote_azimuth(const Lanes& x, const Lanes& y, const Lanes& ho
   const Lanes aside = angle - last + fill(0.5);  // from the centre of the sector, -0.5 .. 0.5
   const Lanes down = select(last <= fill(-3), home + fill(7 * kSector), home - fill(kSector));
   const Lanes up = select(fill(4) <= last, home - fill(7 * kSector), home + fill(kSector));
-  select(big == zero, fill(kLost), select(zero < aside, up, down)).store(votes.beside[3]);
-  select(big == zero, fill(1), magnitude(aside)).store(votes.share[3]);
+  select(big == zero, fill(kLost), select(zero < aside, up, down)).store(beside);
+  share = select(big == zero, fill(1), magnitude(aside));
   return select(big == zero, home_in_sector, home);
 }
 
-/// Radius and elevation: two bins each, centred in their halves; outside the centres a share is lost.
+/// Radius and elevation: two bins each, centred in their halves; outside the centres a share is lost. Returns the share.
 /// `position`: 0 .. 2 over the two halves; `upper`: 1 in the second, else 0.
 template <class Lanes>
-CORRAL_INLINE void vote_half(const Lanes& position, const Lanes& upper, int step, int axis, const Lanes& home,
-                             Votes& votes) {
+CORRAL_INLINE Lanes vote_half(const Lanes& position, const Lanes& upper, int step, const Lanes& home,
+                              std::int32_t* beside) {
   const Lanes inwards = Lanes::fill(1) - upper - upper;  // the direction of the other half
   const Lanes away = position - upper - Lanes::fill(0.5);
-  select(Lanes::fill(0) < away * inwards, home + inwards * Lanes::fill(step), Lanes::fill(kLost))
-      .store(votes.beside[axis]);
-  magnitude(away).store(votes.share[axis]);
+  select(Lanes::fill(0) < away * inwards, home + inwards * Lanes::fill(step), Lanes::fill(kLost)).store(beside);
+  return magnitude(away);
 }
 
+/// Eight vertices from the i-th on, into the places from `at` on.
 template <class Lanes>
-CORRAL_INLINE Votes vote(const Support& support, std::size_t i, const LocalReferenceFrame& frame, double radius,
-                         bool wraps) {
-  Votes votes;
+CORRAL_INLINE void vote(const Support& support, std::size_t i, const LocalReferenceFrame& frame, double radius,
+                        bool wraps, std::size_t at, Votes& votes) {
   const auto fill = [](double number) { return Lanes::fill(number); };
   const Lanes zero = fill(0), one = fill(1);
   const Lanes dx = Lanes::load(&support.x[i]), dy = Lanes::load(&support.y[i]), dz = Lanes::load(&support.z[i]);
@@ -91,7 +92,8 @@ CORRAL_INLINE Votes vote(const Support& support, std::size_t i, const LocalRefer
   };
   const Lanes x = along(0), y = along(1), z = along(2), distance = Lanes::load(&support.distance[i]);
   const Lanes nx = Lanes::load(&support.nx[i]), ny = Lanes::load(&support.ny[i]), nz = Lanes::load(&support.nz[i]);
-  select(magnitude(nx) + magnitude(ny) + magnitude(nz) == zero, zero, one).store(votes.counts);
+  const Lanes counts = select(magnitude(nx) + magnitude(ny) + magnitude(nz) == zero, zero, one);
+  counts.store(&votes.counts[at]);
 
   // Cosine: bins centred on 0 .. 10; none lies beyond the outer centres.
   const Lanes dot = nx * fill(frame(2, 0)) + ny * fill(frame(2, 1)) + nz * fill(frame(2, 2));
@@ -101,52 +103,52 @@ CORRAL_INLINE Votes vote(const Support& support, std::size_t i, const LocalRefer
               cosine = select(whole + fill(0.5) <= position, whole + one, whole);  // halves up
 
   const Lanes shell = select(fill(radius / 2) < distance, one, zero), above = select(zero < z, one, zero);
-  const Lanes home = vote_azimuth(x, y, cosine + above * fill(kAbove) + shell * fill(kShell), votes);
-  home.store(votes.own);
+  Lanes share[Votes::kAxes];
+  const Lanes home =
+      vote_azimuth(x, y, cosine + above * fill(kAbove) + shell * fill(kShell), share[3], &votes.beside[3][at]);
+  home.store(&votes.own[at]);
 
   const Lanes delta = position - cosine;
   const Lanes last = wraps ? fill(kCosines - 2) : fill(kCosines);
   const Lanes up = select(cosine == last, home - cosine, home + one);
-  select(zero < delta, up, select(cosine == zero, home, home - one)).store(votes.beside[0]);
-  magnitude(delta).store(votes.share[0]);
-
-  vote_half(distance * fill(2 / radius), shell, kShell, 1, home, votes);
+  select(zero < delta, up, select(cosine == zero, home, home - one)).store(&votes.beside[0][at]);
+  share[0] = magnitude(delta);
+  share[1] = vote_half(distance * fill(2 / radius), shell, kShell, home, &votes.beside[1][at]);
   // Elevation from the plane up or down, 0 .. 2 over both halves, the lower first.
   const Lanes flat = square_root(x * x + y * y), height = magnitude(z);
   const Lanes angle = octants(smaller(flat, height), select(flat <= height, height, flat));
   const Lanes raised = select(height <= flat, angle, fill(2) - angle) * fill(0.5);  // 0 .. 1
-  vote_half(one + raised * (above + above - one), above, kAbove, 2, home, votes);
-  return votes;
+  share[2] = vote_half(one + raised * (above + above - one), above, kAbove, home, &votes.beside[2][at]);
+
+  for (int axis = 0; axis < Votes::kAxes; ++axis) (share[axis] * counts).store(&votes.share[axis][at]);
+  (((one - share[0]) + (one - share[1]) + (one - share[2]) + (one - share[3])) * counts).store(&votes.rest[at]);
 }
 
-using Histogram = std::array<double, kShotSize + 1>;  // the last takes what is lost
+constexpr int kCopies = 4;  // of the histogram: vertices side by side fall into the same bins, and need not wait
+using Histograms = std::array<std::array<double, kShotSize + 1>, kCopies>;  // the last bin takes what is lost
 
-void add_one_axis_at_a_time(const Votes& votes, int lanes, Histogram& histogram) {
-  for (int lane = 0; lane < lanes; ++lane) {
-    const double counts = votes.counts[lane];
-    double own = Votes::kAxes * counts;
-    for (int axis = 0; axis < Votes::kAxes; ++axis) {
-      const double share = votes.share[axis][lane] * counts;
-      histogram[static_cast<std::size_t>(votes.beside[axis][lane])] += share;
-      own -= share;
-    }
-    histogram[static_cast<std::size_t>(votes.own[lane])] += own;
+void add_one_axis_at_a_time(const Votes& votes, int count, Histograms& histograms) {
+  for (int i = 0; i < count; ++i) {
+    auto& histogram = histograms[static_cast<std::size_t>(i % kCopies)];
+    for (int axis = 0; axis < Votes::kAxes; ++axis)
+      histogram[static_cast<std::size_t>(votes.beside[axis][i])] += votes.share[axis][i];
+    histogram[static_cast<std::size_t>(votes.own[i])] += votes.rest[i];
   }
 }
 
-void add_products(const Votes& votes, int lanes, Histogram& histogram) {
-  for (int lane = 0; lane < lanes; ++lane)
+void add_products(const Votes& votes, int count, Histograms& histograms) {
+  for (int i = 0; i < count; ++i)
     for (int corner = 0; corner < 1 << Votes::kAxes; ++corner) {
-      double weight = votes.counts[lane];
-      int bin = votes.own[lane];
+      double weight = votes.counts[i];
+      int bin = votes.own[i];
       for (int axis = 0; axis < Votes::kAxes; ++axis) {
-        const double share = votes.share[axis][lane];
-        const int beside = votes.beside[axis][lane];
+        const double share = votes.share[axis][i];
+        const int beside = votes.beside[axis][i];
         const bool aside = corner >> axis & 1;
         weight *= aside ? (beside == kLost ? 0 : share) : 1 - share;
-        if (aside && beside != kLost) bin += beside - votes.own[lane];
+        if (aside && beside != kLost) bin += beside - votes.own[i];
       }
-      histogram[static_cast<std::size_t>(bin)] += weight;
+      histograms[static_cast<std::size_t>(i % kCopies)][static_cast<std::size_t>(bin)] += weight;
     }
 }
 
@@ -154,17 +156,25 @@ void add_products(const Votes& votes, int lanes, Histogram& histogram) {
 
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               const std::string& form) {
-  Histogram histogram{};
+  Histograms histograms{};
   const auto add = form == "product" ? add_products : add_one_axis_at_a_time;
-  vectorized([&](auto kind) {
-    for (int i = 0; i < support.count; i += kLanes)
-      add(vote<typename decltype(kind)::Lanes>(support, static_cast<std::size_t>(i), frame, radius, form == "pcl"),
-          std::min(kLanes, support.count - i), histogram);
-  });
-  const Eigen::Map<const Eigen::VectorXd> values(histogram.data(), kShotSize);
+  const bool wraps = form == "pcl";
+  Votes votes;
+  for (int first = 0; first < support.count; first += Votes::kMost) {
+    const int count = std::min(Votes::kMost, support.count - first);
+    vectorized([&](auto kind) {
+      for (int i = 0; i < count; i += kLanes)
+        vote<typename decltype(kind)::Lanes>(support, static_cast<std::size_t>(first + i), frame, radius, wraps,
+                                             static_cast<std::size_t>(i), votes);
+    });
+    add(votes, count, histograms);
+  }
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(kShotSize);
+  for (const auto& histogram : histograms) values += Eigen::Map<const Eigen::VectorXd>(histogram.data(), kShotSize);
   const double norm = values.norm();
   if (!(norm > 0)) return std::nullopt;
-  return values / norm;
+  values /= norm;
+  return values;
 }
 
 }  // namespace corral
