@@ -29,7 +29,7 @@ class NearestSweep {
            slot < grid_.begin(std::min(grid_.cells(), (block + 1) * kCellsPerBlock)); ++slot)
         slots.push_back(slot);
       vectorized([&](auto kind) {
-        for (const int reach : {1, 3, 9}) search(kind, reach, attempt, slots);
+        for (const int reach : {1, 2, 4, 9}) search(kind, reach, attempt, slots);
       });
     });
     std::vector<int> all;

@@ -149,7 +149,7 @@ Points estimate_normals(const Mesh& mesh, const NormalOptions& options, const Pa
   const int k = options.neighbors;
   if (k < 3) throw InvalidInput("estimate_normals", "neighbors", std::to_string(k), "at least 3");
   // Cells a little wider than the k nearest reach, so that the next cells around nearly always hold them.
-  const PointGrid grid = PointGrid::with_occupancy(mesh.vertices, 0.45 * k);
+  const PointGrid grid = PointGrid::with_occupancy(mesh.vertices, 0.42 * k);
   const PlaneFits fits = NearestPlanes(mesh.vertices, grid, k).run(parallel);
   const Points sides = options.side_of_faces ? area_weighted_normals(mesh) : Points();
   Points normals(mesh.vertices.rows(), 3);

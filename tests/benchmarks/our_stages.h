@@ -24,14 +24,19 @@ inline Indices harris(const Mesh& mesh, double resolution, double radius_pr = 3)
 /// The response of every vertex.
 inline Eigen::VectorXd response(const Mesh& mesh, double radius) { return harris_response(mesh.vertices, radius); }
 
-inline Descriptors shot(const Mesh& mesh, const Points& normals, const Indices& keypoints, double resolution) {
-  return describe_shot(mesh.vertices, normals, keypoints, resolution);
+inline Descriptors shot(const Mesh& mesh, const Points& normals, const Indices& keypoints, double resolution,
+                        const std::string& form = "additive") {
+  return describe_shot(mesh.vertices, normals, keypoints, resolution, {15, 10, form});
 }
 
 inline FeatureMatches matching(const Descriptors& source, const Descriptors& target) {
   return match_features(source.features, target.features);
 }
 
-inline MatchedPair whole_match(const Mesh& source, const Mesh& target) { return match_pair(source, target, {}); }
+inline MatchedPair whole_match(const Mesh& source, const Mesh& target) {
+  MatchSettings settings;
+  settings.threads = 1;
+  return match_pair(source, target, settings);
+}
 
 }  // namespace corral::ours

@@ -10,6 +10,7 @@
 #include <exception>
 
 #include "io/mesh_file.h"
+#include "kernel/surface/neighborhood.h"
 #include "tests/benchmarks/our_stages.h"
 #include "tests/peers/pcl_surface.h"
 
@@ -45,9 +46,8 @@ void compare_normals(const Points& ours, const Points& theirs) {
 
 /// Why one side has a keypoint that the other has not.
 struct Reasons {
-  int flat = 0;     ///< theirs only: response below our floor
-  int support = 0;  ///< theirs only: too few vertices around it for our descriptor
-  int tie = 0;      ///< a neighbour has the same response in float, or nearly: either may win
+  int flat = 0;  ///< theirs only: response below our floor
+  int tie = 0;   ///< a neighbour has the same response in float, or nearly: either may win
   int other = 0;
 };
 
@@ -72,45 +72,28 @@ void compare_harris(const Mesh& mesh, const PclSurface& surface, double resoluti
   Reasons here, there;
   for (const int vertex : only_theirs) {
     const double lead = response(vertex) - largest_beside(response, index, mesh.vertices, vertex, radius);
-    const auto around = index.within(mesh.vertices.row(vertex).transpose(), 15 * resolution).size();
-    (response(vertex) < kFlat ? there.flat
-     : around < 11            ? there.support
-     : lead >= -kFloatNoise   ? there.tie
-                              : there.other)++;
+    (response(vertex) < kFlat ? there.flat : lead >= -kFloatNoise ? there.tie : there.other)++;
   }
   for (const int vertex : only_ours) {
     const double lead = response(vertex) - largest_beside(response, index, mesh.vertices, vertex, radius);
     (lead <= kFloatNoise ? here.tie : here.other)++;
   }
   std::printf("  keypoints   ours %zu, theirs %zu, in common %zu\n", ours.size(), theirs.size(), common.size());
-  std::printf(
-      "    only theirs %zu: %d flat, %d without support, %d ties in float, %d other; only ours %zu: %d ties, %d "
-      "other\n",
-      only_theirs.size(), there.flat, there.support, there.tie, there.other, only_ours.size(), here.tie, here.other);
+  std::printf("    only theirs %zu: %d flat, %d ties in float, %d other; only ours %zu: %d ties, %d other\n",
+              only_theirs.size(), there.flat, there.tie, there.other, only_ours.size(), here.tie, here.other);
   const Eigen::VectorXd difference = surface.harris_response(radius).cast<double>() - response;
   std::printf("    response: largest difference %.1e, mean %.1e\n", difference.cwiseAbs().maxCoeff(),
               difference.cwiseAbs().mean());
-}
-
-/// Descriptors with the last cosine bin of every volume added to the first: what PCL's wrap mixes up is one there.
-Eigen::VectorXd fold_wrapped_bins(const Eigen::VectorXd& features) {
-  Eigen::VectorXd folded = features;
-  for (Eigen::Index volume = 0; volume < features.size(); volume += 11) {
-    folded(volume) += folded(volume + 10);
-    folded(volume + 10) = 0;
-  }
-  return folded.normalized();
 }
 
 bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff() <= kClose; }
 
 void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints) {
   const Points normals = surface.normals().array().isNaN().select(0.0, surface.normals());
-  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution);
+  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, "pcl");
   const Shot theirs = surface.shot(keypoints, 15 * resolution);
-  const Indices order = pcl_bin_order();
-  std::size_t both = 0, same_frame = 0, flipped = 0, same = 0, folded = 0, valid = 0, next = 0;
-  double largest = 0, largest_folded = 0;
+  std::size_t both = 0, same_frame = 0, flipped = 0, same = 0, valid = 0, next = 0;
+  double largest = 0;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     valid += theirs.valid[i];
     if (next == ours.vertices.size() || ours.vertices[next] != keypoints[i]) continue;
@@ -125,21 +108,16 @@ void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution
       continue;
     }
     ++same_frame;
-    const Eigen::VectorXd their_column = theirs.features.col(static_cast<Eigen::Index>(i)).cast<double>();
-    const Eigen::VectorXd x = ours.features.col(static_cast<Eigen::Index>(j)).cast<double>(), y = their_column(order);
+    const Eigen::VectorXd x = ours.features.col(static_cast<Eigen::Index>(j)),
+                          y = theirs.features.col(static_cast<Eigen::Index>(i)).cast<double>();
     same += close(x, y);
     largest = std::max(largest, (x - y).cwiseAbs().maxCoeff());
-    const Eigen::VectorXd x_folded = fold_wrapped_bins(x), y_folded = fold_wrapped_bins(y);
-    folded += close(x_folded, y_folded);
-    largest_folded = std::max(largest_folded, (x_folded - y_folded).cwiseAbs().maxCoeff());
   }
   std::printf("  frames      of %zu keypoints ours %zu, theirs %zu; equal %.3f %%, an axis reversed %zu, other %zu\n",
               keypoints.size(), ours.vertices.size(), valid, percent(same_frame, both), flipped,
               both - same_frame - flipped);
-  std::printf(
-      "  descriptors where frames are equal: within 1e-3 %.2f %% (largest difference %.1e); apart from the cosine wrap "
-      "%.2f %% (%.1e)\n",
-      percent(same, same_frame), largest, percent(folded, same_frame), largest_folded);
+  std::printf("  descriptors within 1e-3: %.2f %% of all, %.2f %% where frames are equal (largest difference %.1e)\n",
+              percent(same, both), percent(same, same_frame), largest);
 }
 
 void compare(const char* path) {

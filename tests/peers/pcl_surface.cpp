@@ -182,14 +182,4 @@ PclMatch match_with_pcl(PclSurface& source, PclSurface& target) {
   return match;
 }
 
-Indices pcl_bin_order() {
-  Indices order;
-  for (int azimuth = 0; azimuth < 8; ++azimuth)
-    for (int elevation = 0; elevation < 2; ++elevation)
-      for (int radius = 0; radius < 2; ++radius)
-        for (int cosine = 0; cosine < 11; ++cosine)
-          order.push_back(((azimuth * 2 + radius) * 2 + (1 - elevation)) * 11 + cosine);
-  return order;
-}
-
 }  // namespace corral::peers

@@ -58,8 +58,4 @@ struct PclMatch {
 };
 PclMatch match_with_pcl(PclSurface& source, PclSurface& target);
 
-/// PCL's bin for each of our bins b = ((azimuth*2 + elevation)*2 + radius)*11 + cosine. PCL puts the radius before the
-/// elevation, and below before above.
-Indices pcl_bin_order();
-
 }  // namespace corral::peers
