@@ -15,6 +15,14 @@ namespace {
 constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
 constexpr double kMostCells = 4e18;                         // keys are 63 bits
 
+/// Places far from the corner are rounded to a share of the extent, others to less than this share of a radius.
+constexpr double kRounding = 1e-9;
+double rounding_of(const Points& points) {
+  if (points.rows() == 0) return 0;
+  return 4 * std::numeric_limits<double>::epsilon() *
+         (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+}
+
 /// A point on its way to its place.
 struct Keyed {
   std::int64_t key;
@@ -67,6 +75,10 @@ void radix_sort(std::vector<Keyed>& items) {
 
 }  // namespace
 
+PointGrid PointGrid::for_radius(const Points& points, double radius, int reach) {
+  return PointGrid(points, (radius * (1 + kRounding) + rounding_of(points)) / reach);
+}
+
 PointGrid::PointGrid(const Points& points, double cell_side) : side_(cell_side) {
   if (points.rows() == 0) {
     begins_ = {0};
@@ -76,6 +88,7 @@ PointGrid::PointGrid(const Points& points, double cell_side) : side_(cell_side) 
   // Cell coordinates must fit into 62 bits each, and doubles far from the corner have no finer places anyway.
   side_ = std::max(side_, (points.colwise().maxCoeff() - corner_).maxCoeff() * 1e-15);
   side_ = std::max(side_, std::numeric_limits<double>::min());
+  rounding_ = rounding_of(points);
   sort_into_cells(points);
 }
 
@@ -149,7 +162,8 @@ Eigen::Array3d PointGrid::within_cell(int slot) const {
 double PointGrid::sure_radius(int slot, int reach) const {
   const Eigen::Array3d inside = within_cell(slot);
   const double nearest_face = std::min(inside.minCoeff(), 1 - inside.maxCoeff());
-  return (reach + nearest_face) * side_ * (1 - 1e-9);  // a point on a face may be counted to either side
+  // A point on a face may be counted to either side.
+  return std::max(0.0, (reach + nearest_face) * side_ * (1 - kRounding / 2) - rounding_);
 }
 
 double PointGrid::from_middle(int slot) const { return (within_cell(slot) - 0.5).square().sum() * side_ * side_; }
