@@ -11,6 +11,7 @@
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
 #include "tests/support/meshes.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
 
@@ -57,6 +58,26 @@ TEST(HarrisResponse, AgreesWithTheReference) {
     EXPECT_GE(response.minCoeff(), -1e-15);
     EXPECT_LE(response.maxCoeff(), 1.0 / 27);
   }
+}
+
+/// Steps of random heights over a lattice of tenths: many vertices lie exactly as far from each other as a radius of tenths.
+Points terraces(std::uint64_t seed) {
+  RandomStream random(seed);
+  Points points(400, 3);
+  for (int row = 0; row < 400; ++row)
+    points.row(row) << 0.1 * (row % 20), 0.1 * (row / 20), 0.04 * static_cast<double>(random.below(3));
+  return points;
+}
+
+TEST(HarrisResponse, VerticesExactlyAtTheRadiusCount) {
+  // Far outliers leave few digits for the place of a vertex among the cells.
+  for (const double far : {0.0, 1e3, -1e6, 1e9, -1e13, 1e18})
+    for (const double radius : {0.1, 0.2, 0.3, 0.5}) {
+      const Points points = testing::stacked({terraces(1), testing::points_of({{far, far, far}, {0, -far, 0}})});
+      const Eigen::VectorXd difference =
+          harris_response(points, radius) - testing::reference_harris_response(points, radius);
+      EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << far << " " << radius;
+    }
 }
 
 TEST(HarrisResponse, IsZeroOnFlatGroundAndAlongACylinder) {
