@@ -33,7 +33,7 @@ double pair_resolution(const std::string& rule, double source, double target) {
   if (rule == "mean") {
     const double ratio = std::max(source, target) / std::min(source, target);
     if (!(ratio <= kLargestRatio))
-      throw InvalidInput("match", "resolution",
+      throw InvalidInput("match", "--resolution",
                          to_text(source) + " on the source and " + to_text(target) + " on the target",
                          "both in the same unit, or --resolution with the one to use");
     return (source + target) / 2;
@@ -149,16 +149,16 @@ void expect_one_of(const std::string& field, const std::string& value, const std
 
 void MatchSettings::validate() const {
   if (resolution != "mean" && resolution != "source" && resolution != "target" && !as_length(resolution))
-    throw InvalidInput("match", "resolution", "'" + resolution + "'",
+    throw InvalidInput("match", "--resolution", "'" + resolution + "'",
                        "mean|source|target or a length above zero in mesh units");
-  expect_one_of("detector", detector, {"harris", "harris-mesh", "uniform"});
-  expect_one_of("normals", normals, {"mesh", "origin"});
-  expect_one_of("shot", shot, {"additive", "pcl", "product"});
-  require_positive("match", "keypoint-radius-pr", keypoint_radius_pr);
-  require_positive("match", "support-radius-pr", support_radius_pr);
+  expect_one_of("--detector", detector, {"harris", "harris-mesh", "uniform"});
+  expect_one_of("--normals", normals, {"mesh", "origin"});
+  expect_one_of("--shot", shot, {"additive", "pcl", "product"});
+  require_positive("match", "--keypoint-radius-pr", keypoint_radius_pr);
+  require_positive("match", "--support-radius-pr", support_radius_pr);
   if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
-    throw InvalidInput("match", "sensor", "not a place", "three finite coordinates x,y,z");
-  if (threads < 0) throw InvalidInput("match", "threads", std::to_string(threads), "at least 0");
+    throw InvalidInput("match", "--sensor", "not a place", "three finite coordinates x,y,z");
+  if (threads < 0) throw InvalidInput("match", "--threads", std::to_string(threads), "at least 0");
   harris_mesh.validate();
   matching.validate();
 }

@@ -49,7 +49,7 @@ Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Support& sup
 class SupportFinder {
  public:
   SupportFinder(const Points& vertices, const Points& normals, double radius, bool rim)
-      : grid_(vertices, radius / kReach),
+      : grid_(PointGrid::for_radius(vertices, radius, kReach)),
         nx_(grid_.by_slot(normals.col(0))),
         ny_(grid_.by_slot(normals.col(1))),
         nz_(grid_.by_slot(normals.col(2))),

@@ -52,7 +52,7 @@ struct HarrisMeshOptions {
 /// The bounding box is that of the axes, as in both: its diagonal, and with it `adaptive` and `clustering`, changes when a
 /// mesh is turned (at most by a factor of sqrt 3). All else stays as it is under rigid motion and change of scale.
 ///
-/// Returns all that were selected, whatever lies around them: `dropped_small_support` is 0.
+/// Returns all that were selected, whatever lies around them.
 Keypoints detect_harris_mesh(const Mesh& mesh, double resolution, const HarrisMeshOptions& options = {});
 
 /// The response of every vertex, V, without a unit. NaN where there is none: a vertex without triangles, fewer than 6

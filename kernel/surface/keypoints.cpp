@@ -140,7 +140,7 @@ Indices local_maxima(const PointGrid& grid, const CellNeighborhoods& around, con
 
 Eigen::VectorXd harris_response(const Points& vertices, double radius, const ParallelFor& parallel) {
   require_positive("harris_response", "radius", radius);
-  const PointGrid grid(vertices, radius);
+  const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
   const AlignedColumn by_slot = HarrisOperator(grid, around, radius).run(parallel);
   Eigen::VectorXd response(vertices.rows());
@@ -153,7 +153,7 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   require_positive("detect_harris", "resolution", resolution);
   require_positive("detect_harris", "radius_pr", options.radius_pr);
   const double radius = options.radius_pr * resolution;
-  const PointGrid grid(vertices, radius);
+  const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
   Keypoints keypoints;
   keypoints.vertices = local_maxima(grid, around, HarrisOperator(grid, around, radius).run(parallel), radius);

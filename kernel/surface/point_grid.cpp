@@ -14,9 +14,17 @@ namespace corral {
 namespace {
 
 constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
-constexpr std::int64_t kSlices = 8;
-constexpr std::ptrdiff_t kFew = 100;
-constexpr double kMostCells = 5e17;  // keys are 63 bits
+constexpr std::int64_t kSlices = 8;                         // of a cell along x
+constexpr std::ptrdiff_t kFew = 100;                        // points that insertion sorts
+constexpr double kMostCells = 5e17;                         // keys with their slices are 63 bits
+
+/// Places far from the corner are rounded to a share of the extent, others to less than this share of a radius.
+constexpr double kRounding = 1e-9;
+double rounding_of(const Points& points) {
+  if (points.rows() == 0) return 0;
+  return 4 * std::numeric_limits<double>::epsilon() *
+         (points.colwise().maxCoeff() - points.colwise().minCoeff()).maxCoeff();
+}
 
 /// The cell of every point as one number, ascending by z, then y, then x.
 struct CellKeys {
@@ -129,6 +137,10 @@ double finest_side(const Points& points, const Eigen::RowVector3d& corner) {
 
 }  // namespace
 
+PointGrid PointGrid::for_radius(const Points& points, double radius, int reach) {
+  return PointGrid(points, (radius * (1 + kRounding) + rounding_of(points)) / reach);
+}
+
 PointGrid::PointGrid(const Points& points, double cell_side) : side_(cell_side) {
   if (points.rows() == 0) {
     begins_ = {0};
@@ -136,6 +148,7 @@ PointGrid::PointGrid(const Points& points, double cell_side) : side_(cell_side) 
   }
   corner_ = points.colwise().minCoeff();
   side_ = std::max(side_, finest_side(points, corner_));
+  rounding_ = rounding_of(points);
   sort_into_cells(points);
 }
 
@@ -206,7 +219,8 @@ Eigen::Array3d PointGrid::within_cell(int slot) const {
 double PointGrid::sure_radius(int slot, int reach) const {
   const Eigen::Array3d inside = within_cell(slot);
   const double nearest_face = std::min(inside.minCoeff(), 1 - inside.maxCoeff());
-  return (reach + nearest_face) * side_ * (1 - 1e-9);  // a point on a face may be counted to either side
+  // A point on a face may be counted to either side.
+  return std::max(0.0, (reach + nearest_face) * side_ * (1 - kRounding / 2) - rounding_);
 }
 
 double PointGrid::from_middle(int slot) const { return (within_cell(slot) - 0.5).square().sum() * side_ * side_; }

@@ -17,6 +17,9 @@ class PointGrid {
   /// Finite points; the side of a cell, positive, in their units. O(V) memory however far apart the points are.
   PointGrid(const Points& points, double cell_side);
 
+  /// Cells such that everything within a radius of a point lies in the cells up to `reach` from its own.
+  static PointGrid for_radius(const Points& points, double radius, int reach);
+
   /// Cells of about `occupancy` points each, where the points lie on a surface.
   static PointGrid with_occupancy(const Points& points, double occupancy);
 
@@ -49,6 +52,7 @@ class PointGrid {
   Eigen::Array3d within_cell(int slot) const;  // 0 .. 1 along each axis
 
   double side_;
+  double rounding_ = 0;  // of the difference of two places among the cells, mesh units
   Eigen::RowVector3d corner_;
   std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
   std::vector<int> rows_;

@@ -155,14 +155,15 @@ TEST(Match, MakesATableAndAReport) {
   EXPECT_EQ(printed.out, place.text("matches.csv"));
   const Outcome reported = place.corral("match model.ply copy.ply -o again.csv --json -v");
   EXPECT_EQ(reported.status, 0);
-  EXPECT_THAT(reported.err, AllOf(HasSubstr("source: 2562 points"), HasSubstr("target: "), HasSubstr("matches in")));
+  EXPECT_THAT(reported.err,
+              AllOf(HasSubstr("source: 2562 points"), HasSubstr("target: "), HasSubstr(" matches\nstage ")));
   EXPECT_EQ(place.text("again.csv"), place.text("matches.csv"));
   const CorrespondenceSet matches = read_matches(place / "matches.csv");
   const auto report = reported.json();
   EXPECT_THAT(keys_of(report), IsSupersetOf({"resolution", "source", "target", "matches", "hints"}));
   EXPECT_EQ(report["matches"], matches.size());
   EXPECT_EQ(report["resolution"], matches.resolution);
-  EXPECT_EQ(report["source"]["keypoints"], matches.size());
+  EXPECT_EQ(report["source"]["descriptors"], matches.size());
   EXPECT_GT(matches.size(), 10);
   const Mesh model = read_mesh(place / "model.ply");
   EXPECT_EQ(matches.source_centroid.value(), vertex_centroid(model));

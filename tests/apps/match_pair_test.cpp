@@ -28,6 +28,14 @@ Mesh enlarged(Mesh mesh, double factor) {
   return mesh;
 }
 
+MatchSettings settings_of(const std::string& resolution, double keypoint_radius_pr = 3, double support_radius_pr = 15) {
+  MatchSettings settings;
+  settings.resolution = resolution;
+  settings.keypoint_radius_pr = keypoint_radius_pr;
+  settings.support_radius_pr = support_radius_pr;
+  return settings;
+}
+
 MatchReport report_of(const Mesh& source, const Mesh& target, const MatchSettings& settings) {
   return match_pair(source, target, settings).report;
 }
@@ -38,7 +46,7 @@ TEST(MatchPair, TheRuleGivesTheResolution) {
   const std::vector<std::pair<std::string, double>> rules = {
       {"source", pr}, {"target", 2 * pr}, {"mean", 1.5 * pr}, {"0.125", 0.125}, {"1e-1", 0.1}};
   for (const auto& [rule, expected] : rules) {
-    const MatchedPair pair = match_pair(source, target, {rule, 3, 15});
+    const MatchedPair pair = match_pair(source, target, settings_of(rule, 3, 15));
     EXPECT_DOUBLE_EQ(pair.report.resolution, expected) << rule;
     EXPECT_EQ(pair.matches.resolution, pair.report.resolution) << rule;
     EXPECT_DOUBLE_EQ(pair.report.keypoint_radius, 3 * expected) << rule;
@@ -51,10 +59,11 @@ TEST(MatchPair, TheRuleGivesTheResolution) {
 
 TEST(MatchPair, OtherRulesAreRefused) {
   for (const char* rule : {"", "Mean", "median", "0", "-1", "nan", "inf", "1mm", " 1"}) {
-    const std::string refused = refusal_of([&] { check_resolution_rule(rule); });
+    const std::string refused = refusal_of([&] { settings_of(rule).validate(); });
     EXPECT_THAT(refused, AllOf(HasSubstr("'" + std::string(rule) + "'"),
                                HasSubstr("mean|source|target or a length above zero")));
-    EXPECT_EQ(refusal_of([&] { match_pair(testing::icosphere(1), testing::icosphere(1), {rule, 3, 15}); }), refused);
+    EXPECT_EQ(refusal_of([&] { match_pair(testing::icosphere(1), testing::icosphere(1), settings_of(rule, 3, 15)); }),
+              refused);
   }
 }
 
@@ -76,27 +85,39 @@ TEST(MatchPair, TheReportAddsUp) {
   for (const SurfaceReport& side : {report.source, report.target}) {
     EXPECT_EQ(side.points, 2562);
     EXPECT_EQ(side.faces, 5120);
-    EXPECT_EQ(side.keypoints,
-              side.candidates - side.dropped_small_support - side.dropped_no_frame - side.dropped_no_histogram);
-    EXPECT_GT(side.descriptors_ms, 0);
+    EXPECT_EQ(side.keypoints, side.candidates);
+    EXPECT_EQ(side.descriptors,
+              side.keypoints - side.dropped_small_support - side.dropped_no_frame - side.dropped_no_histogram);
+    EXPECT_FALSE(side.topology.has_value()) << "not asked for";
   }
-  EXPECT_EQ(report.matches, report.source.keypoints);
+  EXPECT_EQ(report.matches, report.source.descriptors);
   EXPECT_EQ(report.matches, pair.matches.size());
   EXPECT_THAT(report.hints, IsEmpty());
 }
 
 TEST(MatchPair, AnnouncesItsStages) {
   std::vector<std::string> stages;
-  match_pair(testing::icosphere(2), testing::icosphere(2), {},
-             [&](const std::string& stage) { stages.push_back(stage); });
+  const MatchReport report =
+      match_pair(testing::icosphere(2), testing::icosphere(2), {}, [&](const std::string& stage) {
+        stages.push_back(stage);
+      }).report;
   EXPECT_EQ(stages.size(), static_cast<std::size_t>(kMatchStages));
   EXPECT_EQ(stages.front(), "resolution of the source");
   EXPECT_EQ(stages.back(), "matching");
+  ASSERT_EQ(report.stages.size(), stages.size());
+  double memory = 0;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    EXPECT_EQ(report.stages[i].stage, stages[i]);
+    EXPECT_GT(report.stages[i].time_ms, 0);
+    EXPECT_GE(report.stages[i].peak_memory_mb, memory) << "a peak does not shrink";
+    memory = report.stages[i].peak_memory_mb;
+  }
+  EXPECT_GT(memory, 1);
 }
 
 TEST(MatchPair, AFlatGridHasNoKeypointAndSaysSo) {
   const Mesh bumpy = testing::bumpy_sphere(4, 1), flat = testing::grid(20, 20);
-  const MatchedPair pair = match_pair(flat, bumpy, {"target", 3, 15});
+  const MatchedPair pair = match_pair(flat, bumpy, settings_of("target", 3, 15));
   EXPECT_EQ(pair.matches.size(), 0);
   ASSERT_EQ(pair.report.hints.size(), 1U);
   EXPECT_THAT(pair.report.hints[0], StartsWith("no keypoint on the source"));
@@ -107,11 +128,11 @@ TEST(MatchPair, AFlatGridHasNoKeypointAndSaysSo) {
 
 TEST(MatchPair, ARadiusTooSmallIsNamedWithABetterOne) {
   const Mesh bumpy = testing::bumpy_sphere(4, 1);
-  for (const std::string& hint : report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints)
+  for (const std::string& hint : report_of(bumpy, bumpy, settings_of("mean", 0.25, 15)).hints)
     EXPECT_THAT(hint,
                 AllOf(HasSubstr("keypoint radius is"), HasSubstr("0.25 pr of this side"), HasSubstr("use about 3 pr")));
-  EXPECT_EQ(report_of(bumpy, bumpy, {"mean", 0.25, 15}).hints.size(), 2U);
-  const MatchReport small_support = report_of(bumpy, bumpy, {"mean", 3, 1});
+  EXPECT_EQ(report_of(bumpy, bumpy, settings_of("mean", 0.25, 15)).hints.size(), 2U);
+  const MatchReport small_support = report_of(bumpy, bumpy, settings_of("mean", 3, 1));
   EXPECT_GT(small_support.source.candidates, 0);
   EXPECT_EQ(small_support.source.dropped_small_support, small_support.source.candidates);
   EXPECT_THAT(small_support.hints, ElementsAre(AllOf(HasSubstr("no keypoint of the source could be described"),
@@ -136,7 +157,7 @@ TEST(MatchPair, MetresAndMillimetresHaveNoMean) {
   Mesh millimetres = metres;
   millimetres.vertices *= 1000;
   EXPECT_THROW(match_pair(metres, millimetres, {}), InvalidInput);
-  EXPECT_NO_THROW(match_pair(metres, millimetres, {"source"}));
+  EXPECT_NO_THROW(match_pair(metres, millimetres, settings_of("source")));
 }
 
 }  // namespace

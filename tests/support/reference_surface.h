@@ -4,10 +4,8 @@
 // The surface room a second time: plain, slow and straight from the definitions, to compare with.
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
-#include "kernel/local_reference_frame.h"
 #include "kernel/surface/keypoints.h"
 #include "kernel/surface/mesh.h"
 #include "kernel/surface/neighborhood.h"
@@ -33,12 +31,5 @@ Points reference_normals(const Mesh& mesh, int k);
 Eigen::VectorXd reference_harris_response(const Points& vertices, double radius);
 
 Keypoints reference_harris(const Points& vertices, double resolution, const HarrisOptions& options);
-
-std::optional<LocalReferenceFrame> reference_shot_frame(const Points& vertices, const Eigen::Vector3d& point,
-                                                        double radius);
-
-std::optional<Eigen::VectorXd> reference_shot_histogram(const Points& vertices, const Points& normals,
-                                                        const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
-                                                        double radius);
 
 }  // namespace corral::testing

@@ -35,6 +35,7 @@ FeatureMatches reference_matches(const Eigen::MatrixXd& source, const Eigen::Mat
     std::vector<std::pair<double, int>> all;
     for (int j = 0; j < target.cols(); ++j) all.emplace_back((source.col(i) - target.col(j)).squaredNorm(), j);
     std::sort(all.begin(), all.end());
+    matches.source.push_back(static_cast<int>(i));
     matches.nearest.push_back(all[0].second);
     matches.distance(i) = std::sqrt(all[0].first);
     matches.second_distance(i) = all.size() > 1 ? std::sqrt(all[1].first) : 0;
@@ -45,6 +46,7 @@ FeatureMatches reference_matches(const Eigen::MatrixXd& source, const Eigen::Mat
 void expect_agrees(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target) {
   const FeatureMatches found = match_features(source, target);
   const FeatureMatches expected = reference_matches(source, target);
+  EXPECT_EQ(found.source, expected.source);
   EXPECT_EQ(found.nearest, expected.nearest);
   ASSERT_EQ(found.distance.size(), source.cols());
   ASSERT_EQ(found.second_distance.size(), source.cols());
@@ -149,7 +151,7 @@ TEST(MakeCorrespondences, RowsFollowTheSourceKeypoints) {
   for (int i = 0; i < 3; ++i) source_side.frames.push_back((i + 1) * Eigen::Matrix3d::Identity());
   for (int i = 0; i < 2; ++i) target_side.frames.push_back((i + 5) * Eigen::Matrix3d::Identity());
 
-  const CorrespondenceSet matches = make_correspondences(source, source_side, target, target_side, 0.25);
+  const CorrespondenceSet matches = make_correspondences({source, source_side}, {target, target_side}, 0.25);
   EXPECT_NO_THROW(matches.validate());
   EXPECT_THAT(matches.source_keypoints, ElementsAre(7, 2, 9));
   EXPECT_THAT(matches.target_keypoints, ElementsAre(11, 4, 11));
@@ -174,9 +176,9 @@ TEST(MakeCorrespondences, NoDescriptorsGiveAnEmptyTable) {
   one.features = features(kShotSize, 1, 15);
   one.vertices = {3};
   one.frames = {Eigen::Matrix3d::Identity()};
-  EXPECT_EQ(make_correspondences(mesh, none, mesh, one, 1).size(), 0);
-  EXPECT_EQ(make_correspondences(mesh, one, mesh, none, 1).size(), 0);
-  EXPECT_NO_THROW(make_correspondences(mesh, one, mesh, none, 1).validate());
+  EXPECT_EQ(make_correspondences({mesh, none}, {mesh, one}, 1).size(), 0);
+  EXPECT_EQ(make_correspondences({mesh, one}, {mesh, none}, 1).size(), 0);
+  EXPECT_NO_THROW(make_correspondences({mesh, one}, {mesh, none}, 1).validate());
 }
 
 }  // namespace

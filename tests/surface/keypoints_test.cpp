@@ -11,7 +11,9 @@
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
 #include "tests/support/meshes.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
+#include "tests/support/tables.h"
 
 namespace corral {
 namespace {
@@ -19,16 +21,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-Eigen::VectorXd response_within(const Points& vertices, double radius) {
-  const PointIndex index(vertices);
-  std::vector<std::vector<Neighbor>> neighborhoods;
-  for (int row = 0; row < vertices.rows(); ++row)
-    neighborhoods.push_back(index.within(vertices.row(row).transpose(), radius));
-  return harris_response(vertices, neighborhoods);
-}
-
 Keypoints detect(const Mesh& mesh, double resolution, const HarrisOptions& options = {}) {
-  return detect_harris(mesh, PointIndex(mesh.vertices), resolution, options);
+  return detect_harris(mesh.vertices, resolution, options);
 }
 
 double largest_difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
@@ -58,7 +52,7 @@ TEST(HarrisResponse, AgreesWithTheReference) {
   for (const std::uint64_t seed : {1u, 2u}) {
     const Points vertices = testing::bumpy_sphere(4, seed).vertices;
     const double radius = 3 * point_resolution(vertices);
-    const Eigen::VectorXd response = response_within(vertices, radius);
+    const Eigen::VectorXd response = harris_response(vertices, radius);
     EXPECT_LT(largest_difference(response, testing::reference_harris_response(vertices, radius)), 1e-9);
     EXPECT_GT(response.maxCoeff(), 1e-4);
     EXPECT_GE(response.minCoeff(), -1e-15);
@@ -66,22 +60,42 @@ TEST(HarrisResponse, AgreesWithTheReference) {
   }
 }
 
+/// Steps of random heights over a lattice of tenths: many vertices lie exactly as far from each other as a radius of tenths.
+Points terraces(std::uint64_t seed) {
+  RandomStream random(seed);
+  Points points(400, 3);
+  for (int row = 0; row < 400; ++row)
+    points.row(row) << 0.1 * (row % 20), 0.1 * (row / 20), 0.04 * static_cast<double>(random.below(3));
+  return points;
+}
+
+TEST(HarrisResponse, VerticesExactlyAtTheRadiusCount) {
+  // Far outliers leave few digits for the place of a vertex among the cells.
+  for (const double far : {0.0, 1e3, -1e6, 1e9, -1e13, 1e18})
+    for (const double radius : {0.1, 0.2, 0.3, 0.5}) {
+      const Points points = testing::stacked({terraces(1), testing::points_of({{far, far, far}, {0, -far, 0}})});
+      const Eigen::VectorXd difference =
+          harris_response(points, radius) - testing::reference_harris_response(points, radius);
+      EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-9) << far << " " << radius;
+    }
+}
+
 TEST(HarrisResponse, IsZeroOnFlatGroundAndAlongACylinder) {
-  EXPECT_LT(response_within(testing::grid(15, 15).vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(harris_response(testing::grid(15, 15).vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
   Points cylinder(30 * 20, 3);
   for (int row = 0; row < cylinder.rows(); ++row) {
     const double angle = 2 * std::acos(-1.0) * (row % 30) / 30;
     cylinder.row(row) << 5 * std::cos(angle), 5 * std::sin(angle), row / 30;
   }
   // Away from the open ends all normals are at right angles to the axis: the determinant is zero.
-  const Eigen::VectorXd response = response_within(cylinder, 2.5);
+  const Eigen::VectorXd response = harris_response(cylinder, 2.5);
   EXPECT_LT(largest_where(cylinder, response, [](const Eigen::Vector3d& x) { return x.z() > 5.5 && x.z() < 13.5; }),
             1e-15);
 }
 
 TEST(HarrisResponse, CornersStandOutOnACube) {
   const Points points = cube_surface(8);
-  const Eigen::VectorXd response = response_within(points, 3);
+  const Eigen::VectorXd response = harris_response(points, 3);
   const auto at_limit = [](const Eigen::Vector3d& x) { return (x.array().abs() == 8).count(); };
   const double corner = largest_where(points, response, [&](const Eigen::Vector3d& x) { return at_limit(x) == 3; });
   const double edge = largest_where(
@@ -94,34 +108,28 @@ TEST(HarrisResponse, CornersStandOutOnACube) {
 }
 
 TEST(HarrisResponse, ThreeOrthogonalPlanesReachTheLimit) {
-  // Three flat patches, and one vertex that sees a vertex of each, and one that has no normal: A = I / 3.
-  Points points(11, 3);
-  points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 50, 0, 0, 50, 1, 0, 50, 0, 1, 0, 50, 0, 1, 50, 0, 0, 50, 1, 9, 9, 9, 8, 8, 8;
-  std::vector<std::vector<Neighbor>> around(11);
-  for (int row = 0; row < 9; ++row)
-    for (int other = row / 3 * 3; other < row / 3 * 3 + 3; ++other)
-      around[static_cast<std::size_t>(row)].push_back({other, 1});
-  around[9] = {{0, 1}, {3, 1}, {6, 1}, {10, 1}};
-  around[10] = {{9, 1}, {10, 0}};
-  const Eigen::VectorXd response = harris_response(points, around);
-  EXPECT_LT(response.head(9).cwiseAbs().maxCoeff(), 1e-15);
-  EXPECT_NEAR(response(9), 1.0 / 27, 1e-15);
+  // Within 1 of the first vertex lie two others, and each of these has one more: three planes across the three axes, and
+  // two vertices at the ends that see too little for a normal.
+  const Points points = testing::points_of({{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0.5, 0, 1.5}, {0.5, 1.5, 0}});
+  const Eigen::VectorXd response = harris_response(points, 1);
+  EXPECT_NEAR(response(0), 1.0 / 27, 1e-15);  // A = I / 3
+  EXPECT_LT(response.tail(4).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(HarrisResponse, VerticesWithoutANormalAreLeftOut) {
-  EXPECT_EQ(response_within(Points::Zero(1, 3), 1)(0), 0);
-  EXPECT_EQ(response_within(Points::Zero(50, 3), 1).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(harris_response(Points::Zero(1, 3), 1)(0), 0);
+  EXPECT_EQ(harris_response(Points::Zero(50, 3), 1).cwiseAbs().maxCoeff(), 0);
   Points line = Points::Zero(30, 3);
   for (int row = 0; row < 30; ++row) line.row(row) = (0.1 * row + 1) * Eigen::RowVector3d(1, -2, 0.3);
-  EXPECT_EQ(response_within(line, 1.5).cwiseAbs().maxCoeff(), 0);
-  EXPECT_EQ(response_within(line.array() + 1e3, 1.5).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(harris_response(line, 1.5).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(harris_response(line.array() + 1e3, 1.5).cwiseAbs().maxCoeff(), 0);
 }
 
 TEST(HarrisResponse, RigidMotionDoesNotChangeIt) {
   const Mesh mesh = testing::bumpy_sphere(4, 3);
   const double radius = 3 * point_resolution(mesh.vertices);
   const Mesh moved = move_mesh(mesh, random_motion(mesh, 4));
-  EXPECT_LT(largest_difference(response_within(mesh.vertices, radius), response_within(moved.vertices, radius)), 1e-9);
+  EXPECT_LT(largest_difference(harris_response(mesh.vertices, radius), harris_response(moved.vertices, radius)), 1e-9);
 }
 
 TEST(DetectHarris, AgreesWithTheReference) {
@@ -135,23 +143,8 @@ TEST(DetectHarris, AgreesWithTheReference) {
       const Keypoints expected = testing::reference_harris(mesh.vertices, resolution, options);
       EXPECT_EQ(found.vertices, expected.vertices);
       EXPECT_EQ(found.candidates, expected.candidates);
-      EXPECT_EQ(found.dropped_small_support, expected.dropped_small_support);
       EXPECT_GT(found.vertices.size(), 5u);
     }
-  }
-}
-
-TEST(DetectHarris, SupportIsCountedWithoutTheKeypoint) {
-  const Mesh mesh = testing::bumpy_sphere(3, 5);
-  const double resolution = point_resolution(mesh.vertices);
-  HarrisOptions options;
-  options.support_radius_pr = 3;
-  const int candidates = detect(mesh, resolution, options).candidates;
-  for (int minimum = 0; minimum < 60; ++minimum) {
-    options.minimum_support = minimum;
-    const Keypoints found = detect(mesh, resolution, options);
-    EXPECT_EQ(found.vertices, testing::reference_harris(mesh.vertices, resolution, options).vertices) << minimum;
-    EXPECT_EQ(static_cast<int>(found.vertices.size()) + found.dropped_small_support, candidates);
   }
 }
 
@@ -210,7 +203,7 @@ TEST(DetectHarris, TooLittleSurfaceGivesNone) {
 }
 
 TEST(DetectHarris, NoVerticesGiveNone) {
-  EXPECT_EQ(response_within(Points(0, 3), 1).size(), 0);
+  EXPECT_EQ(harris_response(Points(0, 3), 1).size(), 0);
   EXPECT_THAT(detect({Points(0, 3), Triangles(0, 3)}, 1).vertices, IsEmpty());
 }
 
@@ -221,9 +214,7 @@ TEST(DetectHarris, LengthsAreChecked) {
     EXPECT_THROW(detect(mesh, bad), InvalidInput);
     options.radius_pr = bad;
     EXPECT_THROW(detect(mesh, 1, options), InvalidInput);
-    options = {};
-    options.support_radius_pr = bad;
-    EXPECT_THROW(detect(mesh, 1, options), InvalidInput);
+    EXPECT_THROW(harris_response(mesh.vertices, bad), InvalidInput);
   }
 }
 

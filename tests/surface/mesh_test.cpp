@@ -28,8 +28,7 @@ using testing::refusal_of;
 
 /// All steps from a mesh to its descriptors.
 Descriptors describe(const Mesh& mesh, double resolution) {
-  const PointIndex index(mesh.vertices);
-  return describe_shot(mesh, estimate_normals(mesh, index), index, detect_harris(mesh, index, resolution).vertices,
+  return describe_shot(mesh.vertices, estimate_normals(mesh), detect_harris(mesh.vertices, resolution).vertices,
                        resolution);
 }
 

@@ -14,17 +14,11 @@ namespace {
 
 using testing::points_of;
 
-Points normals_of(const Mesh& mesh, int k = 20) { return estimate_normals(mesh, PointIndex(mesh.vertices), k); }
+Points normals_of(const Mesh& mesh, int k = 20) { return estimate_normals(mesh, {k}); }
 
 Mesh shifted(Mesh mesh, const Eigen::RowVector3d& offset) {
   mesh.vertices.rowwise() += offset;
   return mesh;
-}
-
-std::vector<Neighbor> all_rows(const Points& points) {
-  std::vector<Neighbor> rows;
-  for (int row = 0; row < points.rows(); ++row) rows.push_back({row, 0});
-  return rows;
 }
 
 TEST(EstimateNormals, AgreeWithTheReference) {
@@ -125,24 +119,40 @@ TEST(EstimateNormals, NeedThreeNeighbours) {
   for (const int k : {2, 1, 0, -5}) EXPECT_THROW(normals_of(testing::icosphere(1), k), InvalidInput);
 }
 
-TEST(PlaneNormal, OfThreePointsIsTheirCrossProduct) {
-  const Points points = points_of({{1, 0, 0}, {0, 2, 0}, {0, 0, 3}});
-  const Eigen::Vector3d expected = Eigen::Vector3d(6, 3, 2).normalized();
-  EXPECT_NEAR(std::abs(plane_normal(points, all_rows(points)).dot(expected)), 1, 1e-14);
+TEST(EstimateNormals, OfThreePointsAreTheirCrossProduct) {
+  const Mesh mesh{points_of({{1, 0, 0}, {0, 2, 0}, {0, 0, 3}}), Triangles(0, 3)};
+  const Eigen::RowVector3d expected = -Eigen::RowVector3d(6, 3, 2).normalized();  // towards the origin
+  EXPECT_LT((normals_of(mesh).rowwise() - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(PlaneNormal, IsZeroWithoutAPlane) {
-  for (const Points& points : {Points(0, 3), points_of({{1, 2, 3}}), points_of({{1, 2, 3}, {2, 2, 3}}),
+TEST(EstimateNormals, AreZeroWithoutAPlane) {
+  for (const Points& points : {points_of({{1, 2, 3}}), points_of({{1, 2, 3}, {2, 2, 3}}),
                                points_of({{1, 2, 3}, {2, 2, 3}, {4, 2, 3}}), Points(Points::Ones(40, 3))})
-    EXPECT_EQ(plane_normal(points, all_rows(points)), Eigen::Vector3d(Eigen::Vector3d::Zero()));
+    EXPECT_TRUE(normals_of({points, Triangles(0, 3)}).isZero(0));
 }
 
-TEST(PlaneNormal, SignIsTheOnlyFreedom) {
-  for (const double scale : {1e-6, 1.0, 1e6}) {
-    const Points points = scale * testing::bumpy_sphere(2, 7).vertices.topRows(25);
-    const Eigen::Vector3d expected = testing::reference_plane_normal(points, all_rows(points));
-    EXPECT_NEAR(std::abs(plane_normal(points, all_rows(points)).dot(expected)), 1, 1e-12);
+TEST(EstimateNormals, UnitOfLengthDoesNotMatter) {
+  const Mesh mesh = testing::bumpy_sphere(3, 7);
+  for (const double scale : {1e-6, 1e6})
+    EXPECT_LT((normals_of({scale * mesh.vertices, mesh.triangles}) - normals_of(mesh)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(EstimateNormals, LookAtTheSensor) {
+  Mesh mesh = testing::icosphere(3);
+  NormalOptions options;
+  options.sensor << 0, 0, 40;
+  const Points outward = estimate_normals(mesh, options);  // faces decide
+  options.side_of_faces = false;
+  const Points turned = estimate_normals(mesh, options);
+  mesh.triangles.resize(0, 3);
+  options.side_of_faces = true;
+  EXPECT_EQ(estimate_normals(mesh, options), turned);
+  for (int row = 0; row < turned.rows(); ++row) {
+    EXPECT_GT(outward.row(row).dot(mesh.vertices.row(row)), 0.99);
+    EXPECT_GE(turned.row(row).dot(options.sensor.transpose() - mesh.vertices.row(row)), 0);
   }
+  EXPECT_LT((turned - outward).rowwise().norm().maxCoeff(), 2.001);
+  EXPECT_GT((turned - outward).rowwise().norm().maxCoeff(), 1.9) << "those on the far side are turned";
 }
 
 }  // namespace
