@@ -48,13 +48,11 @@ class Pipeline {
       : settings_(settings), observer_(observer), report_(report), parallel_(workers(settings.threads)) {}
 
   void measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
-    stage("resolution of the " + side, [&] {
-      mesh.validate(side);
-      report.points = static_cast<int>(mesh.vertices.rows());
-      report.faces = static_cast<int>(mesh.triangles.rows());
-      if (settings_.inspect) report.topology = inspect_topology(mesh);
-      report.resolution = point_resolution(mesh.vertices, parallel_);
-    });
+    mesh.validate(side);
+    report.points = static_cast<int>(mesh.vertices.rows());
+    report.faces = static_cast<int>(mesh.triangles.rows());
+    if (settings_.inspect) stage("topology of the " + side, [&] { report.topology = inspect_topology(mesh); });
+    stage("resolution of the " + side, [&] { report.resolution = point_resolution(mesh.vertices, parallel_); });
   }
 
   Descriptors describe(const Mesh& mesh, const std::string& side, SurfaceReport& report) {

@@ -8,12 +8,52 @@
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/feature_matching.h"
 #include "kernel/surface/keypoints.h"
+#include "kernel/surface/neighborhood.h"
 #include "kernel/surface/normals.h"
+#include "kernel/surface/point_grid.h"
 #include "kernel/surface/resolution.h"
 
 namespace corral::ours {
 
 inline double resolution(const Mesh& mesh) { return point_resolution(mesh.vertices); }
+
+/// How many pairs of vertices lie within a radius, by the grid of the hot loops.
+inline double pairs_by_grid(const Mesh& mesh, double radius) {
+  const PointGrid grid = PointGrid::for_radius(mesh.vertices, radius, 1);
+  const CellNeighborhoods around(grid, 1);
+  double pairs = 0;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    Lanes count = Lanes::fill(0);
+    for (int cell = 0; cell < grid.cells(); ++cell)
+      for (auto slot = static_cast<std::size_t>(grid.begin(cell)); slot < static_cast<std::size_t>(grid.end(cell));
+           ++slot)
+        visit_within<Lanes>(grid, around.begin(cell), around.end(cell), grid.x()[slot], grid.y()[slot], grid.z()[slot],
+                            radius * radius, [&](auto inside, Lanes, Lanes, Lanes, std::size_t) {
+                              count = count + select(inside, Lanes::fill(1), Lanes::fill(0));
+                            });
+    pairs = sum(count);
+  });
+  return pairs;
+}
+
+/// The same by CGAL's tree.
+inline double pairs_by_tree(const Mesh& mesh, double radius) {
+  const PointIndex index(mesh.vertices);
+  double pairs = 0;
+  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
+    pairs += static_cast<double>(index.within(mesh.vertices.row(row).transpose(), radius).size());
+  return pairs;
+}
+
+/// The 20 nearest of every vertex by CGAL's tree: what our normals would have to begin with.
+inline double nearest_by_tree(const Mesh& mesh) {
+  const PointIndex index(mesh.vertices);
+  double farthest = 0;
+  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
+    farthest = std::max(farthest, index.nearest(mesh.vertices.row(row).transpose(), 20).back().squared_distance);
+  return farthest;
+}
 
 inline Points normals(const Mesh& mesh) { return estimate_normals(mesh); }
 

@@ -110,6 +110,15 @@ void add_stages(Registry& registry, Workload& load) {
   const PclStages theirs = pcl_stages(load);
   const auto ours = [](const Call& call) -> Setup { return [call] { return call; }; };
   registry.add(load, "resolution", ours([&mesh] { DoNotOptimize(ours::resolution(mesh)); }), "pcl", theirs.resolution);
+  const auto pairs = [&load](double (*count)(const Mesh&, double)) -> Setup {
+    return [&load, count]() -> Call {
+      const double radius = 3 * load.resolution();
+      return [&load, radius, count] { DoNotOptimize(count(load.mesh(), radius)); };
+    };
+  };
+  registry.add(load, "within-3pr", pairs(ours::pairs_by_grid), "cgal", pairs(ours::pairs_by_tree));
+  registry.add(load, "normals", ours([&mesh] { DoNotOptimize(ours::normals(mesh).data()); }), "cgal-20-nearest",
+               ours([&mesh] { DoNotOptimize(ours::nearest_by_tree(mesh)); }));
   registry.add(load, "normals", ours([&mesh] { DoNotOptimize(ours::normals(mesh).data()); }), "pcl", theirs.normals);
   const Setup harris = [&load]() -> Call {
     const double resolution = load.resolution();

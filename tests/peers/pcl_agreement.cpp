@@ -88,8 +88,8 @@ void compare_harris(const Mesh& mesh, const PclSurface& surface, double resoluti
 
 bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff() <= kClose; }
 
-void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints) {
-  const Points normals = surface.normals().array().isNaN().select(0.0, surface.normals());
+void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints,
+                  const Points& normals) {
   const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, "pcl");
   const Shot theirs = surface.shot(keypoints, 15 * resolution);
   std::size_t both = 0, same_frame = 0, flipped = 0, same = 0, valid = 0, next = 0;
@@ -113,10 +113,10 @@ void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution
     same += close(x, y);
     largest = std::max(largest, (x - y).cwiseAbs().maxCoeff());
   }
-  std::printf("  frames      of %zu keypoints ours %zu, theirs %zu; equal %.3f %%, an axis reversed %zu, other %zu\n",
+  std::printf("    frames      of %zu keypoints ours %zu, theirs %zu; equal %.3f %%, an axis reversed %zu, other %zu\n",
               keypoints.size(), ours.vertices.size(), valid, percent(same_frame, both), flipped,
               both - same_frame - flipped);
-  std::printf("  descriptors within 1e-3: %.2f %% of all, %.2f %% where frames are equal (largest difference %.1e)\n",
+  std::printf("    descriptors within 1e-3: %.2f %% of all, %.2f %% where frames are equal (largest difference %.1e)\n",
               percent(same, both), percent(same, same_frame), largest);
 }
 
@@ -131,7 +131,10 @@ void compare(const char* path) {
   compare_normals(ours::normals(mesh), surface.normals());
   const Indices keypoints = surface.harris(3 * ours);
   compare_harris(mesh, surface, ours, keypoints);
-  compare_shot(mesh, surface, ours, keypoints);
+  std::printf("  with PCL's normals\n");
+  compare_shot(mesh, surface, ours, keypoints, surface.normals().array().isNaN().select(0.0, surface.normals()));
+  std::printf("  with our normals towards the origin\n");
+  compare_shot(mesh, surface, ours, keypoints, estimate_normals(mesh, {20, false}));
 }
 
 }  // namespace
