@@ -44,7 +44,7 @@ double nearest_by_tree(const PointIndex& index, const Eigen::Vector3d& point, in
 }  // namespace
 
 double point_resolution(const Points& vertices, const ParallelFor& parallel) {
-  constexpr double kOccupancy = 3;  // the nearest vertex is then nearly always in the next cells around
+  constexpr double kOccupancy = 5;  // the nearest vertex is then nearly always in the next cells around
   const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
   AlignedColumn squares(grid.x().size(), 0.0);
   const auto left = NearestSweep(grid).run(
