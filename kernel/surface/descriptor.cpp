@@ -5,98 +5,170 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/error.h"
+#include "kernel/surface/point_grid.h"
 
 namespace corral {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / 3.141592653589793;
-constexpr int kAzimuths = 8, kElevations = 2, kShells = 2, kCosines = 11;
-constexpr std::size_t kSmallestNeighborhood = 5;
+constexpr int kSmallestFrame = 5;
 
-/// Turns an axis to the side where most neighbours lie. `offsets`: N x 3, nearest first.
-Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Points& offsets) {
-  const Eigen::VectorXd along = offsets * axis;
-  const Eigen::Index count = along.size();
-  const Eigen::Index ahead = (along.array() >= 0).count();
-  if (2 * ahead != count) return 2 * ahead < count ? Eigen::Vector3d(-axis) : axis;
-  const Eigen::Index median = std::clamp<Eigen::Index>(count / 2, 2, count - 3);
-  return (along.segment(median - 2, 5).array() > 0).count() < 3 ? Eigen::Vector3d(-axis) : axis;
+/// Turns an axis to the side where most of the support lies.
+Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Support& support) {
+  int ahead = 0;
+  const auto along = [&](std::size_t i) {
+    return support.x[i] * axis.x() + support.y[i] * axis.y() + support.z[i] * axis.z();
+  };
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes x = Lanes::fill(axis.x()), y = Lanes::fill(axis.y()), z = Lanes::fill(axis.z()), zero = Lanes::fill(0),
+                one = Lanes::fill(1);
+    Lanes count = zero;  // the padding lies at the point: ahead
+    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
+      const Lanes dot = Lanes::load(&support.x[i]) * x + Lanes::load(&support.y[i]) * y + Lanes::load(&support.z[i]) * z;
+      count = count + select(zero <= dot, one, zero);
+    }
+    ahead = static_cast<int>(sum(count)) - (padded(support.count) - support.count);
+  });
+  if (2 * ahead != support.count) return 2 * ahead < support.count ? Eigen::Vector3d(-axis) : axis;
+
+  std::vector<std::size_t> order(static_cast<std::size_t>(support.count));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return support.distance[a] < support.distance[b]; });
+  int positive = 0;
+  const auto median = static_cast<std::size_t>(std::clamp(support.count / 2, 2, support.count - 3));
+  for (std::size_t i = median - 2; i <= median + 2; ++i) positive += along(order[i]) > 0;
+  return positive < 3 ? Eigen::Vector3d(-axis) : axis;
 }
 
-/// A bin and what the value gives to the bin beside it along one axis.
-struct Share {
-  int bin;      ///< where the value lies
-  int beside;   ///< the nearer neighbour along the axis, or -1 at the end of the axis
-  double away;  ///< distance from the centre of `bin` in bins, 0 .. 0.5
+/// The support of every vertex that is asked for, through a grid.
+class SupportFinder {
+ public:
+  SupportFinder(const Points& vertices, const Points& normals, double radius, bool rim)
+      : grid_(vertices, radius / kReach),
+        nx_(grid_.by_slot(normals.col(0))),
+        ny_(grid_.by_slot(normals.col(1))),
+        nz_(grid_.by_slot(normals.col(2))),
+        squared_(rim ? radius * radius : std::nextafter(radius * radius, 0)),
+        slots_(static_cast<std::size_t>(grid_.size())) {
+    for (int slot = 0; slot < grid_.size(); ++slot) slots_[static_cast<std::size_t>(grid_.row(slot))] = slot;
+  }
+
+  /// The order in which walking over the cells meets some vertices.
+  std::vector<std::size_t> walk(const Indices& vertices) const {
+    std::vector<std::size_t> order(vertices.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return std::make_pair(slot_of(vertices[a]), a) < std::make_pair(slot_of(vertices[b]), b);
+    });
+    return order;
+  }
+
+  CellSweep sweep() const { return {grid_, kReach}; }
+
+  /// Vertices must come in the order of walk().
+  void find(int vertex, CellSweep& sweep, std::vector<SlotRange>& ranges, Support& support) const {
+    const auto slot = static_cast<std::size_t>(slot_of(vertex));
+    ranges.clear();
+    sweep.around(grid_.cell_of(static_cast<int>(slot)), ranges);
+    std::size_t most = kLanes;
+    for (const SlotRange& range : ranges) most += static_cast<std::size_t>(range.end - range.begin);
+    for (Column* column : {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
+      if (column->size() < most) column->resize(2 * most);
+    collect(slot, ranges, support);
+    pad(support);
+  }
+
+ private:
+  static constexpr int kReach = 2;  // cells of half the radius waste fewer looks than cells of the radius
+
+  int slot_of(int vertex) const { return slots_[static_cast<std::size_t>(vertex)]; }
+
+  void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
+    const double x = grid_.x()[slot], y = grid_.y()[slot], z = grid_.z()[slot], squared = squared_;
+    std::size_t count = 0;
+    for (const SlotRange& range : ranges)
+      for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end); ++i) {
+        // Written always, kept if inside: a branch would be guessed wrong for half of them.
+        const double dx = grid_.x()[i] - x, dy = grid_.y()[i] - y, dz = grid_.z()[i] - z;
+        const double distance = dx * dx + dy * dy + dz * dz;
+        support.x[count] = dx, support.y[count] = dy, support.z[count] = dz, support.distance[count] = distance;
+        support.nx[count] = nx_[i], support.ny[count] = ny_[i], support.nz[count] = nz_[i];
+        count += static_cast<std::size_t>((distance <= squared) & (distance > 0));
+      }
+    support.count = static_cast<int>(count);
+  }
+
+  /// Roots of the distances, and nothing in the padding.
+  static void pad(Support& support) {
+    const auto count = static_cast<std::size_t>(support.count), end = static_cast<std::size_t>(padded(support.count));
+    for (Column* column : {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
+      std::fill(column->begin() + static_cast<std::ptrdiff_t>(count), column->begin() + static_cast<std::ptrdiff_t>(end), 0.0);
+    vectorized([&](auto kind) {
+      using Lanes = typename decltype(kind)::Lanes;
+      for (std::size_t i = 0; i < end; i += kLanes)
+        square_root(Lanes::load(&support.distance[i])).store(&support.distance[i]);
+    });
+  }
+
+  PointGrid grid_;
+  Column nx_, ny_, nz_;
+  double squared_;
+  std::vector<int> slots_;  // by vertex
 };
 
-/// `position`: coordinate in which bin b is centred at b. `count` bins, `circular` or ending at both sides.
-Share share_of(double position, int count, bool circular) {
-  const int nearest = static_cast<int>(std::floor(position + 0.5));
-  const int bin = circular ? (nearest + count) % count : std::clamp(nearest, 0, count - 1);
-  const double delta = position - (circular ? nearest : bin);
-  int beside = delta > 0 ? bin + 1 : bin - 1;
-  if (circular)
-    beside = (beside + count) % count;
-  else if (beside >= count)
-    beside = -1;
-  return {bin, beside, std::abs(delta)};
-}
-
-int flat_bin(int azimuth, int elevation, int shell, int cosine) {
-  return ((azimuth * kElevations + elevation) * kShells + shell) * kCosines + cosine;
-}
-
-void vote(Eigen::VectorXd& histogram, const Eigen::Vector3d& local, double distance, double cosine, double radius) {
-  const double azimuth_deg = std::atan2(local.y(), local.x()) * kDegreesPerRadian;  // -180 .. 180
-  const double polar_deg = std::acos(std::clamp(local.z() / distance, -1.0, 1.0)) * kDegreesPerRadian;
-  // Bin b of an axis is centred at position b: cosine bins sit on whole numbers, the others halfway between their
-  // edges.
-  const Share c = share_of((1 + std::clamp(cosine, -1.0, 1.0)) * (kCosines - 1) / 2, kCosines, false);
-  const Share a = share_of((azimuth_deg + 180) / 45 - 0.5, kAzimuths, true);
-  const Share e = share_of(polar_deg / 90 - 0.5, kElevations, false);
-  const Share s = share_of(distance / (radius / 2) - 0.5, kShells, false);
-
-  double own = 1 - c.away;
-  if (c.beside >= 0) histogram(flat_bin(a.bin, e.bin, s.bin, c.beside)) += c.away;
-  own += 1 - s.away;
-  if (s.beside >= 0) histogram(flat_bin(a.bin, e.bin, s.beside, c.bin)) += s.away;
-  own += 1 - e.away;
-  if (e.beside >= 0) histogram(flat_bin(a.bin, e.beside, s.bin, c.bin)) += e.away;
-  own += 1 - a.away;
-  histogram(flat_bin(a.beside, e.bin, s.bin, c.bin)) += a.away;
-  histogram(flat_bin(a.bin, e.bin, s.bin, c.bin)) += own;
-}
+enum class Outcome : char { Described, SmallSupport, NoFrame, NoHistogram };
 
 }  // namespace
 
-std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eigen::Vector3d& point,
-                                              const std::vector<Neighbor>& neighbors, double radius) {
-  std::vector<Neighbor> around;
-  for (const Neighbor& neighbor : neighbors)
-    if (neighbor.squared_distance > 0) around.push_back(neighbor);
-  if (around.size() < kSmallestNeighborhood) return std::nullopt;
-  std::sort(around.begin(), around.end(), [](const Neighbor& a, const Neighbor& b) {
-    return a.squared_distance < b.squared_distance || (a.squared_distance == b.squared_distance && a.index < b.index);
-  });
+void ShotOptions::validate() const {
+  require_positive("describe_shot", "radius_pr", radius_pr);
+  if (minimum_support < 0)
+    throw InvalidInput("describe_shot", "minimum_support", std::to_string(minimum_support), "at least 0");
+  if (form != "additive" && form != "pcl" && form != "product")
+    throw InvalidInput("describe_shot", "form", "'" + form + "'", "additive|pcl|product");
+}
 
-  Points offsets(static_cast<Eigen::Index>(around.size()), 3);
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  double weights = 0;
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    const Eigen::RowVector3d offset = vertices.row(around[i].index) - point.transpose();
-    const double weight = radius - std::sqrt(around[i].squared_distance);
-    offsets.row(static_cast<Eigen::Index>(i)) = offset;
-    moments += weight * offset.transpose() * offset;
-    weights += weight;
+void Support::add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal) {
+  const double length = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z());
+  if (!(length > 0)) return;
+  const auto at = static_cast<std::size_t>(count++);
+  const double values[] = {offset.x(), offset.y(), offset.z(), length, normal.x(), normal.y(), normal.z()};
+  const double* value = values;
+  for (Column* column : {&x, &y, &z, &distance, &nx, &ny, &nz}) {
+    column->resize(static_cast<std::size_t>(padded(count)), 0.0);
+    (*column)[at] = *value++;
   }
+}
+
+std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius) {
+  if (support.count < kSmallestFrame) return std::nullopt;
+  Eigen::Matrix3d moments;
+  double weights = 0;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes limit = Lanes::fill(radius), zero = Lanes::fill(0);
+    Lanes w = zero, xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
+      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]),
+                  distance = Lanes::load(&support.distance[i]);
+      const Lanes weight = select(zero < distance, limit - distance, zero);
+      const Lanes wx = weight * x, wy = weight * y, wz = weight * z;
+      w = w + weight;
+      xx = xx + wx * x, xy = xy + wx * y, xz = xz + wx * z, yy = yy + wy * y, yz = yz + wy * z, zz = zz + wz * z;
+    }
+    weights = sum(w);
+    const double m01 = sum(xy), m02 = sum(xz), m12 = sum(yz);
+    moments << sum(xx), m01, m02, m01, sum(yy), m12, m02, m12, sum(zz);
+  });
   moments /= weights;
-  if (!moments.allFinite()) return std::nullopt;                         // every neighbour exactly at the rim
+  if (!moments.allFinite()) return std::nullopt;                         // every vertex exactly at the rim
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);  // ascending eigenvalues
-  const Eigen::Vector3d x = towards_majority(solver.eigenvectors().col(2), offsets);
-  const Eigen::Vector3d z = towards_majority(solver.eigenvectors().col(0), offsets);
+  const Eigen::Vector3d x = towards_majority(solver.eigenvectors().col(2), support);
+  const Eigen::Vector3d z = towards_majority(solver.eigenvectors().col(0), support);
   LocalReferenceFrame frame;
   frame.row(0) = x;
   frame.row(1) = z.cross(x);
@@ -104,47 +176,55 @@ std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eige
   return frame;
 }
 
-std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals,
-                                              const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
-                                              const std::vector<Neighbor>& neighbors, double radius) {
-  Eigen::VectorXd histogram = Eigen::VectorXd::Zero(kShotSize);
-  for (const Neighbor& neighbor : neighbors) {
-    const Eigen::Vector3d normal = normals.row(neighbor.index).transpose();
-    if (!(neighbor.squared_distance > 0) || normal.isZero(0)) continue;
-    const Eigen::Vector3d local = frame * (vertices.row(neighbor.index).transpose() - point);
-    vote(histogram, local, std::sqrt(neighbor.squared_distance), normal.dot(frame.row(2)), radius);
-  }
-  const double norm = histogram.norm();
-  if (!(norm > 0)) return std::nullopt;
-  return histogram / norm;
-}
-
-Descriptors describe_shot(const Mesh& mesh, const Points& normals, const PointIndex& index, const Indices& keypoints,
-                          double resolution, double radius_pr) {
+Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
+                          const ShotOptions& options, const ParallelFor& parallel) {
   require_positive("describe_shot", "resolution", resolution);
-  require_positive("describe_shot", "radius_pr", radius_pr);
-  const double radius = radius_pr * resolution;
+  options.validate();
+  const double radius = options.radius_pr * resolution;
+  const SupportFinder finder(vertices, normals, radius, options.form != "pcl");
+  const auto order = finder.walk(keypoints);
+
+  const auto count = static_cast<Eigen::Index>(keypoints.size());
   Descriptors descriptors;
-  std::vector<Eigen::VectorXd> columns;
-  for (const int vertex : keypoints) {
-    const Eigen::Vector3d point = mesh.vertices.row(vertex).transpose();
-    const auto neighbors = index.within(point, radius);
-    const auto frame = shot_frame(mesh.vertices, point, neighbors, radius);
-    if (!frame) {
-      ++descriptors.dropped_no_frame;
-      continue;
+  LocalReferenceFrames frames(keypoints.size());
+  std::vector<Outcome> outcomes(keypoints.size());
+  descriptors.features.resize(kShotSize, count);
+  constexpr std::size_t kBlock = 64;
+  parallel(static_cast<int>((order.size() + kBlock - 1) / kBlock), [&](int block) {
+    CellSweep sweep = finder.sweep();
+    std::vector<SlotRange> ranges;
+    Support support;
+    for (std::size_t at = static_cast<std::size_t>(block) * kBlock;
+         at < std::min(order.size(), (static_cast<std::size_t>(block) + 1) * kBlock); ++at) {
+      const std::size_t i = order[at];
+      finder.find(keypoints[i], sweep, ranges, support);
+      outcomes[i] = Outcome::SmallSupport;
+      if (support.count < options.minimum_support) continue;
+      outcomes[i] = Outcome::NoFrame;
+      const auto frame = shot_frame(support, radius);
+      if (!frame) continue;
+      outcomes[i] = Outcome::NoHistogram;
+      const auto histogram = shot_histogram(support, *frame, radius, options.form);
+      if (!histogram) continue;
+      outcomes[i] = Outcome::Described;
+      frames[i] = *frame;
+      descriptors.features.col(static_cast<Eigen::Index>(i)) = *histogram;
     }
-    auto histogram = shot_histogram(mesh.vertices, normals, point, *frame, neighbors, radius);
-    if (!histogram) {
-      ++descriptors.dropped_no_histogram;
-      continue;
-    }
-    descriptors.vertices.push_back(vertex);
-    descriptors.frames.push_back(*frame);
-    columns.push_back(std::move(*histogram));
+  });
+
+  Eigen::Index kept = 0;
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    descriptors.dropped_small_support += outcomes[i] == Outcome::SmallSupport;
+    descriptors.dropped_no_frame += outcomes[i] == Outcome::NoFrame;
+    descriptors.dropped_no_histogram += outcomes[i] == Outcome::NoHistogram;
+    if (outcomes[i] != Outcome::Described) continue;
+    descriptors.vertices.push_back(keypoints[i]);
+    descriptors.frames.push_back(frames[i]);
+    if (kept < static_cast<Eigen::Index>(i))
+      descriptors.features.col(kept) = descriptors.features.col(static_cast<Eigen::Index>(i));
+    ++kept;
   }
-  descriptors.features.resize(kShotSize, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) descriptors.features.col(static_cast<Eigen::Index>(i)) = columns[i];
+  descriptors.features.conservativeResize(Eigen::NoChange, kept);
   return descriptors;
 }
 

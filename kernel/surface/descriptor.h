@@ -2,53 +2,78 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "kernel/local_reference_frame.h"
+#include "kernel/parallel.h"
 #include "kernel/surface/mesh.h"
-#include "kernel/surface/neighborhood.h"
+#include "kernel/vectorized.h"
 
 namespace corral {
 
-/// Length of a SHOT descriptor: 8 azimuth x 2 elevation x 2 radial volumes with 11 cosine bins each.
+/// Length of a SHOT descriptor: 8 azimuth x 2 radial x 2 elevation volumes with 11 cosine bins each.
 constexpr int kShotSize = 352;
+
+struct ShotOptions {
+  double radius_pr = 15;      ///< of the support
+  int minimum_support = 10;   ///< vertices other than the keypoint that the support must hold
+  std::string form = "additive";  ///< additive | pcl | product: see shot_histogram
+
+  /// Throws InvalidInput.
+  void validate() const;
+};
+
+/// The support of a point: the vertices around it, column by column, without those at the point itself.
+struct Support {
+  Column x, y, z;     ///< from the point, mesh units
+  Column distance;    ///< > 0
+  Column nx, ny, nz;  ///< unit normals; zero where there is none
+  int count = 0;
+
+  /// Adds a vertex; at distance 0 it is passed over.
+  void add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
+};
 
 /// The repeatable frame of the surface around a point (rows x, y, z).
 ///
-///   M = sum (R - d_i)(x_i - p)(x_i - p)^T / sum (R - d_i)  over 0 < d_i = |x_i - p| <= R
+///   M = sum (R - d_i) x_i x_i^T / sum (R - d_i)  over 0 < d_i = |x_i| <= R, x_i from the point
 ///
 /// x and z are the eigenvectors of the largest and the smallest eigenvalue, turned to the side where at least half of the
-/// neighbours lie; on an exact tie to the side of most of the five neighbours around the median distance. y = z cross x.
-/// `neighbors`  the vertices within `radius` of the point (those at distance 0 are left out), in any order.
+/// support lies; on an exact tie to the side of most of the five vertices around the median distance. y = z cross x.
 /// Source    [tombari2010shot].
-/// Returns   absent for fewer than 5 neighbours, or where all lie so that no frame is finite.
-std::optional<LocalReferenceFrame> shot_frame(const Points& vertices, const Eigen::Vector3d& point,
-                                              const std::vector<Neighbor>& neighbors, double radius);
+/// Returns   absent for fewer than 5 vertices, or where all lie so that no frame is finite.
+std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
-/// The SHOT histogram of the surface around a point, unit length; absent if no neighbour with a normal falls into it.
+/// The SHOT histogram of a support, unit length; absent if no vertex with a normal is in it.
 ///
-/// For each neighbour the cosine between its normal and the frame's z axis goes into the volume it lies in; what it gives
-/// to the neighbouring bin along each of the four axes (cosine, radius, elevation, azimuth) is added one axis at a time.
-///
-/// Order     bin = ((azimuth * 2 + elevation) * 2 + radius) * 11 + cosine; azimuth sectors from -180 degrees counter-
-///           clockwise, elevation 0 above (z > 0), radius 0 inside R/2.
-/// Source    [tombari2010shot]; additive interpolation and L2 norm as in the library that [yang2017evaluation] ran.
-/// Departs   The neighbour of the last cosine bin is clamped; that library wraps it to bin 0. Its order of bins differs.
-std::optional<Eigen::VectorXd> shot_histogram(const Points& vertices, const Points& normals,
-                                              const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
-                                              const std::vector<Neighbor>& neighbors, double radius);
+/// For each vertex the cosine between its normal and the frame's z axis goes into the volume that it lies in. Along each of
+/// the four axes (cosine, radius, elevation, azimuth) the bin beside gets a share that grows with the distance from the
+/// centre of the own bin, up to a half; beyond the last centre of an axis that ends the share is lost.
+///   additive  the four shares are added one axis at a time, and the own bin gets the rest of each
+///   product   the shares multiply, over up to 16 bins
+///   pcl       additive, with the slip of that library: what bin 9 of the cosine gives to bin 10 goes to bin 0; and a vertex
+///             at exactly R is outside
+/// Order     bin = ((azimuth * 2 + shell) * 2 + above) * 11 + cosine; azimuth sectors from -180 degrees counter-clockwise,
+///           shell 1 beyond R / 2, above 1 for z > 0. A sector holds its upper border. On the z axis, where there is no
+///           azimuth, nothing is shared along it.
+/// Source    [tombari2010shot]; additive shares, L2 norm and order as in the library that [yang2017evaluation] ran.
+std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
+                                              const std::string& form = "additive");
 
 /// Descriptors of those keypoints that have one.
 struct Descriptors {
-  Indices vertices;              ///< vertex of each column, in the order of the keypoints
-  LocalReferenceFrames frames;   ///< frame of each column
-  Eigen::MatrixXd features;      ///< 352 x N, one column per keypoint, unit length
-  int dropped_no_frame = 0;      ///< keypoints without a frame
-  int dropped_no_histogram = 0;  ///< keypoints with an empty histogram
+  Indices vertices;               ///< vertex of each column, in the order of the keypoints
+  LocalReferenceFrames frames;    ///< frame of each column
+  Eigen::MatrixXd features;       ///< 352 x N, one column per keypoint, unit length
+  int dropped_small_support = 0;  ///< keypoints with too few vertices around them
+  int dropped_no_frame = 0;       ///< keypoints without a frame
+  int dropped_no_histogram = 0;   ///< keypoints with an empty histogram
 };
 
-/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part), radius in pr (paper: 15).
-/// Throws    InvalidInput if radius or resolution is not finite and positive.
-Descriptors describe_shot(const Mesh& mesh, const Points& normals, const PointIndex& index, const Indices& keypoints,
-                          double resolution, double radius_pr = 15);
+/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part). Any number of threads, and any
+/// numbering of the vertices, gives the same bits.
+/// Throws    InvalidInput if an option or the resolution is out of range.
+Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
+                          const ShotOptions& options = {}, const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

@@ -4,21 +4,69 @@
 #include <cmath>
 
 #include "kernel/error.h"
+#include "kernel/surface/nearest_sweep.h"
 #include "kernel/surface/neighborhood.h"
-#include "kernel/surface/topology.h"
 
 namespace corral {
+namespace {
 
-double point_resolution(const Points& vertices) {
-  const Points distinct = distinct_points(vertices);
-  if (distinct.rows() < 2)
-    throw InvalidInput("point_resolution", "number of distinct vertices", std::to_string(distinct.rows()),
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Duplicates are next to each other in the order of the slots.
+bool is_duplicate(const PointGrid& grid, std::size_t slot) {
+  return slot > 0 && grid.x()[slot] == grid.x()[slot - 1] && grid.y()[slot] == grid.y()[slot - 1] &&
+         grid.z()[slot] == grid.z()[slot - 1];
+}
+
+/// Squared distance of a slot to the nearest point in another place, among some ranges; infinite if there is none.
+template <class Lanes>
+CORRAL_INLINE double nearest_other(const PointGrid& grid, const SlotRange* first, const SlotRange* last,
+                                   std::size_t slot) {
+  const Lanes none = Lanes::fill(kInfinity), zero = Lanes::fill(0);
+  Lanes nearest = none;
+  visit_within<Lanes>(grid, first, last, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
+                      [&](auto inside, Lanes dx, Lanes dy, Lanes dz, std::size_t) {
+                        const Lanes squared = select(inside, dx * dx + dy * dy + dz * dz, none);
+                        nearest = smaller(nearest, select(zero < squared, squared, none));
+                      });
+  return smallest(nearest);
+}
+
+/// The same by CGAL's tree, for points that lie so that cells do not help.
+double nearest_by_tree(const PointIndex& index, const Eigen::Vector3d& point, int size) {
+  for (int count = 2;; count *= 2) {
+    for (const Neighbor& neighbor : index.nearest(point, count))
+      if (neighbor.squared_distance > 0) return neighbor.squared_distance;
+    if (count >= size) return kInfinity;
+  }
+}
+
+}  // namespace
+
+double point_resolution(const Points& vertices, const ParallelFor& parallel) {
+  constexpr double kOccupancy = 3;  // the nearest vertex is then nearly always in the next cells around
+  const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
+  Column squares(grid.x().size(), 0.0);
+  const auto left = NearestSweep(grid).run(
+      parallel, [&](int slot, const SlotRange* first, const SlotRange* last, double sure_squared, auto kind) {
+        const auto i = static_cast<std::size_t>(slot);
+        squares[i] = nearest_other<typename decltype(kind)::Lanes>(grid, first, last, i);
+        return squares[i] <= sure_squared;
+      });
+  if (!left.empty()) {
+    const PointIndex index(vertices);
+    for (const int slot : left)
+      squares[static_cast<std::size_t>(slot)] =
+          nearest_by_tree(index, vertices.row(grid.row(slot)).transpose(), grid.size());
+  }
+  double total = 0;
+  int distinct = 0;
+  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
+    if (!is_duplicate(grid, slot)) total += std::sqrt(squares[slot]), ++distinct;
+  if (distinct < 2)
+    throw InvalidInput("point_resolution", "number of distinct vertices", std::to_string(distinct),
                        "at least 2 (resolution would be zero)");
-  const PointIndex index(distinct);
-  double sum = 0;
-  for (Eigen::Index row = 0; row < distinct.rows(); ++row)
-    sum += std::sqrt(index.nearest(distinct.row(row).transpose(), 2)[1].squared_distance);
-  return sum / static_cast<double>(distinct.rows());
+  return total / distinct;
 }
 
 }  // namespace corral

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+
+#include "kernel/parallel.h"
+#include "kernel/surface/point_grid.h"
+#include "kernel/vectorized.h"
+
+namespace corral {
+
+// The arithmetic of a plane through the points around a vertex, on lanes. Only sources include this.
+
+/// Second moments of some vectors: xx, xy, xz, yy, yz, zz.
+template <class Number>
+struct Moments {
+  Number xx, xy, xz, yy, yz, zz;
+};
+
+/// Eight eigenproblems of symmetric 3 x 3 matrices at once: eigenvalues on the diagonal, in no order, and eigenvectors in
+/// columns. Cyclic Jacobi rotations: accurate to rounding whatever the gaps between the eigenvalues.
+template <class Lanes>
+struct SymmetricEigen {
+  Lanes value[3];
+  Lanes vector[3][3];  ///< [component][which]
+
+  CORRAL_INLINE explicit SymmetricEigen(const Moments<Lanes>& m) {
+    Lanes a[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) vector[i][j] = Lanes::fill(i == j ? 1 : 0);
+    constexpr int kSweeps = 5;  // off-diagonals shrink quadratically: rounding is reached after four
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      rotate(a, 0, 1, 2);
+      rotate(a, 0, 2, 1);
+      rotate(a, 1, 2, 0);
+    }
+    for (int i = 0; i < 3; ++i) value[i] = a[i][i];
+  }
+
+ private:
+  /// Makes a[p][q] zero; r is the third index.
+  CORRAL_INLINE void rotate(Lanes (&a)[3][3], int p, int q, int r) {
+    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
+    const auto is_zero = a[p][q] == zero;
+    const Lanes theta = (a[q][q] - a[p][p]) / (a[p][q] + a[p][q]);
+    const Lanes size = select(theta < zero, zero - theta, theta);
+    const Lanes unsigned_tangent = one / (size + square_root(theta * theta + one));
+    const Lanes tangent =
+        select(is_zero, zero, select(theta < zero, zero - unsigned_tangent, unsigned_tangent));
+    const Lanes cosine = one / square_root(tangent * tangent + one), sine = tangent * cosine;
+    const Lanes shift = tangent * a[p][q];
+    a[p][p] = a[p][p] - shift;
+    a[q][q] = a[q][q] + shift;
+    a[p][q] = a[q][p] = zero;
+    const Lanes to_p = cosine * a[r][p] - sine * a[r][q], to_q = sine * a[r][p] + cosine * a[r][q];
+    a[r][p] = a[p][r] = to_p;
+    a[r][q] = a[q][r] = to_q;
+    for (int i = 0; i < 3; ++i) {
+      const Lanes vp = vector[i][p], vq = vector[i][q];
+      vector[i][p] = cosine * vp - sine * vq;
+      vector[i][q] = sine * vp + cosine * vq;
+    }
+  }
+};
+
+/// Columns of moments about the mean, one row per fitted vertex, and the normals that they become.
+struct PlaneFits {
+  Column xx, xy, xz, yy, yz, zz;
+  Column nx, ny, nz;
+
+  explicit PlaneFits(int count) {
+    for (Column* column : {&xx, &xy, &xz, &yy, &yz, &zz, &nx, &ny, &nz})
+      column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);
+  }
+
+  /// The moments of the points of some ranges within a squared distance of a slot, and of some more slots; returns how
+  /// many there are.
+  template <class Lanes>
+  CORRAL_INLINE int fit(std::size_t at, const PointGrid& grid, const SlotRange* first, const SlotRange* last,
+                        std::size_t slot, double squared, const std::vector<std::size_t>& more = {}) {
+    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
+    Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
+          szz = zero;
+    visit_within<Lanes>(grid, first, last, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
+                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, std::size_t) {
+                          dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
+                          n = n + select(inside, one, zero);
+                          sx = sx + dx, sy = sy + dy, sz = sz + dz;
+                          sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
+                          syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
+                        });
+    Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
+    for (const std::size_t other : more)
+      sums.add(grid.x()[other] - grid.x()[slot], grid.y()[other] - grid.y()[slot], grid.z()[other] - grid.z()[slot]);
+    put(at, sums);
+    return static_cast<int>(sums.count);
+  }
+
+  /// The moments of chosen points, for the few that lanes do not find.
+  void fit_rows(std::size_t at, const Points& points, const Eigen::RowVector3d& center, Indices rows) {
+    const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2)); };
+    std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });  // whatever their numbers are
+    Sums sums{};
+    for (const int row : rows) {
+      const Eigen::RowVector3d d = points.row(row) - center;
+      sums.add(d.x(), d.y(), d.z());
+    }
+    put(at, sums);
+  }
+
+  /// All normals, in blocks.
+  void solve_all(const ParallelFor& parallel) {
+    constexpr std::size_t kBlock = 4096;
+    parallel(static_cast<int>((xx.size() + kBlock - 1) / kBlock), [this](int block) {
+      const auto first = static_cast<std::size_t>(block) * kBlock;
+      vectorized([&](auto kind) {
+        solve<typename decltype(kind)::Lanes>(first, std::min(first + kBlock, xx.size()));
+      });
+    });
+  }
+
+ private:
+  /// Over offsets from a vertex.
+  struct Sums {
+    double count, x, y, z;
+    Moments<double> m;
+    void add(double dx, double dy, double dz) {
+      count += 1, x += dx, y += dy, z += dz;
+      m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
+    }
+  };
+
+  /// Keeps the moments about the mean.
+  void put(std::size_t at, const Sums& s) {
+    const double share = s.count > 0 ? 1 / s.count : 0;
+    xx[at] = s.m.xx - s.x * s.x * share, xy[at] = s.m.xy - s.x * s.y * share, xz[at] = s.m.xz - s.x * s.z * share;
+    yy[at] = s.m.yy - s.y * s.y * share, yz[at] = s.m.yz - s.y * s.z * share, zz[at] = s.m.zz - s.z * s.z * share;
+  }
+
+  /// Normals from moments: the direction of least variance; zero where fewer than two directions have any (too few points,
+  /// or all on one line).
+  template <class Eight>
+  CORRAL_INLINE void solve(std::size_t first, std::size_t last) {
+    using Lanes = lanes::Pair<lanes::Pair<Eight>>;  // four chains of divisions and roots at once hide their latency
+    for (std::size_t i = first; i < last; i += Lanes::kCount) {
+      const SymmetricEigen<Lanes> eigen({Lanes::load(&xx[i]), Lanes::load(&xy[i]), Lanes::load(&xz[i]),
+                                         Lanes::load(&yy[i]), Lanes::load(&yz[i]), Lanes::load(&zz[i])});
+      const Lanes &a = eigen.value[0], &b = eigen.value[1], &c = eigen.value[2];
+      const Lanes low_ab = select(a <= b, a, b), high_ab = select(a <= b, b, a);
+      const Lanes largest = select(high_ab <= c, c, high_ab);
+      const Lanes below = select(high_ab <= c, high_ab, c), middle = select(below <= low_ab, low_ab, below);
+      const auto is_plane = Lanes::fill(1e-12) * largest < middle;
+      const auto pick = [&](int component) {
+        const Lanes(&v)[3] = eigen.vector[component];
+        const Lanes of_low = select(a <= b, v[0], v[1]);
+        return select(is_plane, select(low_ab <= c, of_low, v[2]), Lanes::fill(0));
+      };
+      pick(0).store(&nx[i]), pick(1).store(&ny[i]), pick(2).store(&nz[i]);
+    }
+  }
+};
+
+}  // namespace corral

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/surface/mesh.h"
+#include "kernel/vectorized.h"
+
+namespace corral {
+
+/// Points sorted into cubic cells: the index of the loops that ask for the neighbourhood of every vertex, where a tree is
+/// several times slower. A *slot* is a place in the sorted order: by cell, then by x, y, z, then by row. Sums over
+/// neighbours run in this order, so that they do not depend on how the vertices are numbered.
+class PointGrid {
+ public:
+  /// Finite points; the side of a cell, positive, in their units. O(V) memory however far apart the points are.
+  PointGrid(const Points& points, double cell_side);
+
+  /// Cells of about `occupancy` points each, where the points lie on a surface.
+  static PointGrid with_occupancy(const Points& points, double occupancy);
+
+  int size() const { return static_cast<int>(rows_.size()); }
+  int row(int slot) const { return rows_[static_cast<std::size_t>(slot)]; }
+  const Column& x() const { return x_; }  ///< by slot
+  const Column& y() const { return y_; }
+  const Column& z() const { return z_; }
+
+  double cell_side() const { return side_; }
+  int cells() const { return static_cast<int>(keys_.size()); }  ///< occupied ones, in the order of the slots
+  int begin(int cell) const { return begins_[static_cast<std::size_t>(cell)]; }
+  int end(int cell) const { return begins_[static_cast<std::size_t>(cell) + 1]; }
+  int cell_of(int slot) const;
+
+  /// How far from the point of a slot everything is sure to lie in the cells up to `reach` from its own.
+  double sure_radius(int slot, int reach) const;
+
+  /// Squared distance of a slot's point to the middle of its cell.
+  double from_middle(int slot) const;
+
+  /// Values by row, in the order of the slots and padded.
+  Column by_slot(const Eigen::Ref<const Eigen::VectorXd>& values) const;
+
+  static constexpr int kLargestReach = 9;
+
+ private:
+  friend class CellSweep;
+  void sort_into_cells(const Points& points);
+  Eigen::Array3d within_cell(int slot) const;  // 0 .. 1 along each axis
+
+  double side_;
+  Eigen::RowVector3d corner_;
+  std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
+  std::vector<int> rows_;
+  Column x_, y_, z_;
+  std::vector<std::int64_t> keys_;  // of the occupied cells, ascending
+  std::vector<int> begins_;
+};
+
+/// Slots next to each other in the order of the grid.
+struct SlotRange {
+  int begin, end;
+};
+
+/// Walks over cells in ascending order and tells which slots lie around each.
+class CellSweep {
+ public:
+  /// `reach`: cells up to this many away along each axis, at most kLargestReach.
+  CellSweep(const PointGrid& grid, int reach);
+
+  /// Appends the slots around a cell, ascending. `cell` must not be smaller than at the call before.
+  void around(int cell, std::vector<SlotRange>& ranges);
+
+ private:
+  const PointGrid& grid_;
+  int reach_;
+  std::vector<std::int64_t> offsets_;  // of keys, to the first cell of each row of cells
+  std::vector<std::size_t> cursors_;   // first cell that is not before it
+};
+
+/// What CellSweep tells of every cell, for those who walk more than once.
+class CellNeighborhoods {
+ public:
+  CellNeighborhoods(const PointGrid& grid, int reach);
+  const SlotRange* begin(int cell) const { return &ranges_[begins_[static_cast<std::size_t>(cell)]]; }
+  const SlotRange* end(int cell) const { return &ranges_[begins_[static_cast<std::size_t>(cell) + 1]]; }
+
+ private:
+  std::vector<SlotRange> ranges_;
+  std::vector<std::size_t> begins_;
+};
+
+/// Calls visit(inside, dx, dy, dz, slot) for eight slots after the other of some ranges: `inside` is true on the lanes that
+/// lie within a squared distance of (x, y, z), d their offsets from it, `slot` the first of the eight.
+template <class Lanes, class Visit>
+CORRAL_INLINE void visit_within(const PointGrid& grid, const SlotRange* first, const SlotRange* last, double x, double y,
+                                double z, double squared, const Visit& visit) {
+  static constexpr double kLane[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z), limit = Lanes::fill(squared),
+              lane = Lanes::load(kLane), none = Lanes::fill(-1);
+  const auto look = [&](int slot, const Lanes& limit_here) {
+    const auto at = static_cast<std::size_t>(slot);
+    const Lanes dx = Lanes::load(&grid.x()[at]) - cx, dy = Lanes::load(&grid.y()[at]) - cy,
+                dz = Lanes::load(&grid.z()[at]) - cz;
+    visit(dx * dx + dy * dy + dz * dz <= limit_here, dx, dy, dz, at);
+  };
+  for (const SlotRange* range = first; range != last; ++range) {
+    int slot = range->begin;
+    for (; slot + kLanes <= range->end; slot += kLanes) look(slot, limit);
+    if (slot < range->end) look(slot, select(lane < Lanes::fill(range->end - slot), limit, none));
+  }
+}
+
+}  // namespace corral

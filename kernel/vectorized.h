@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace corral {
+
+/// The vector registers that hot loops use.
+enum class VectorLevel { Baseline, Avx2, Avx512 };
+
+/// The best that this machine has, unless a lower one was forced.
+VectorLevel vector_level();
+
+/// From now on no better than this, in all threads (tests compare the levels). Never what the machine lacks.
+void force_vector_level(VectorLevel level);
+
+// Eight doubles that are added, compared and selected together, in as many registers as the machine needs. Every level
+// computes each lane by the same IEEE operations (nothing is contracted) and sums the lanes in one fixed order, so that
+// results are the same to the last bit on every machine.
+
+namespace lanes {
+
+#define CORRAL_INLINE inline __attribute__((always_inline))
+
+using Double2 [[gnu::vector_size(16)]] = double;
+using Double4 [[gnu::vector_size(32)]] = double;
+using Double8 [[gnu::vector_size(64)]] = double;
+using Integers2 [[gnu::vector_size(8)]] = std::int32_t;
+using Integers4 [[gnu::vector_size(16)]] = std::int32_t;
+using Integers8 [[gnu::vector_size(32)]] = std::int32_t;
+
+/// A comparison of registers, made where it is used: compilers keep it in a mask register then, and nowhere else.
+enum class Order { Less, LessEqual, Equal };
+template <Order kOrder, class Doubles>
+struct Comparison {
+  Doubles a, b;
+  CORRAL_INLINE Doubles choose(Doubles yes, Doubles no) const {
+    if constexpr (kOrder == Order::Less)
+      return a < b ? yes : no;
+    else if constexpr (kOrder == Order::LessEqual)
+      return a <= b ? yes : no;
+    else
+      return a == b ? yes : no;
+  }
+};
+
+/// One register.
+template <class Doubles, class Integers>
+struct Register {
+  static constexpr int kCount = sizeof(Doubles) / sizeof(double);
+  Doubles value;
+
+  static CORRAL_INLINE Register fill(double number) { return {number - Doubles{}}; }
+  static CORRAL_INLINE Register load(const double* from) {
+    Register result;
+    __builtin_memcpy(&result.value, from, sizeof(Doubles));
+    return result;
+  }
+  CORRAL_INLINE void store(double* to) const { __builtin_memcpy(to, &value, sizeof(Doubles)); }
+  /// Whole numbers, as such.
+  CORRAL_INLINE void store(std::int32_t* to) const {
+    const Integers integers = __builtin_convertvector(value, Integers);
+    __builtin_memcpy(to, &integers, sizeof(Integers));
+  }
+
+  friend CORRAL_INLINE Register operator+(Register a, Register b) { return {a.value + b.value}; }
+  friend CORRAL_INLINE Register operator-(Register a, Register b) { return {a.value - b.value}; }
+  friend CORRAL_INLINE Register operator*(Register a, Register b) { return {a.value * b.value}; }
+  friend CORRAL_INLINE Register operator/(Register a, Register b) { return {a.value / b.value}; }
+  friend CORRAL_INLINE Comparison<Order::Less, Doubles> operator<(Register a, Register b) {
+    return {a.value, b.value};
+  }
+  friend CORRAL_INLINE Comparison<Order::LessEqual, Doubles> operator<=(Register a, Register b) {
+    return {a.value, b.value};
+  }
+  friend CORRAL_INLINE Comparison<Order::Equal, Doubles> operator==(Register a, Register b) {
+    return {a.value, b.value};
+  }
+  template <Order kOrder>
+  friend CORRAL_INLINE Register select(Comparison<kOrder, Doubles> mask, Register a, Register b) {
+    return {mask.choose(a.value, b.value)};
+  }
+  friend CORRAL_INLINE Register smaller(Register a, Register b) { return {a.value < b.value ? a.value : b.value}; }
+  friend CORRAL_INLINE Register square_root(Register a) {
+    double numbers[kCount];
+    a.store(numbers);
+    for (double& number : numbers) number = __builtin_sqrt(number);
+    return load(numbers);
+  }
+  friend CORRAL_INLINE Register magnitude(Register a) { return {a.value < 0 ? -a.value : a.value}; }
+  /// Lane i added to lane i + half the count.
+  CORRAL_INLINE auto folded() const {
+    if constexpr (kCount == 8)
+      return Register<Double4, Integers4>{__builtin_shufflevector(value, value, 0, 1, 2, 3) +
+                                      __builtin_shufflevector(value, value, 4, 5, 6, 7)};
+    else if constexpr (kCount == 4)
+      return Register<Double2, Integers2>{__builtin_shufflevector(value, value, 0, 1) +
+                                      __builtin_shufflevector(value, value, 2, 3)};
+    else
+      return value[0] + value[1];
+  }
+};
+
+template <class Half>
+struct ComparisonPair {
+  Half low, high;
+};
+
+/// Two halves, where one register does not hold all lanes.
+template <class Half>
+struct Pair {
+  static constexpr int kCount = 2 * Half::kCount;
+  Half low, high;
+
+  static CORRAL_INLINE Pair fill(double number) { return {Half::fill(number), Half::fill(number)}; }
+  static CORRAL_INLINE Pair load(const double* from) { return {Half::load(from), Half::load(from + Half::kCount)}; }
+  template <class Number>
+  CORRAL_INLINE void store(Number* to) const {
+    low.store(to), high.store(to + Half::kCount);
+  }
+
+  friend CORRAL_INLINE Pair operator+(Pair a, Pair b) { return {a.low + b.low, a.high + b.high}; }
+  friend CORRAL_INLINE Pair operator-(Pair a, Pair b) { return {a.low - b.low, a.high - b.high}; }
+  friend CORRAL_INLINE Pair operator*(Pair a, Pair b) { return {a.low * b.low, a.high * b.high}; }
+  friend CORRAL_INLINE Pair operator/(Pair a, Pair b) { return {a.low / b.low, a.high / b.high}; }
+  friend CORRAL_INLINE auto operator<(Pair a, Pair b) {
+    return ComparisonPair<decltype(a.low < b.low)>{a.low < b.low, a.high < b.high};
+  }
+  friend CORRAL_INLINE auto operator<=(Pair a, Pair b) {
+    return ComparisonPair<decltype(a.low <= b.low)>{a.low <= b.low, a.high <= b.high};
+  }
+  friend CORRAL_INLINE auto operator==(Pair a, Pair b) {
+    return ComparisonPair<decltype(a.low == b.low)>{a.low == b.low, a.high == b.high};
+  }
+  template <class Mask>
+  friend CORRAL_INLINE Pair select(ComparisonPair<Mask> mask, Pair a, Pair b) {
+    return {select(mask.low, a.low, b.low), select(mask.high, a.high, b.high)};
+  }
+  friend CORRAL_INLINE Pair smaller(Pair a, Pair b) { return {smaller(a.low, b.low), smaller(a.high, b.high)}; }
+  friend CORRAL_INLINE Pair square_root(Pair a) { return {square_root(a.low), square_root(a.high)}; }
+  friend CORRAL_INLINE Pair magnitude(Pair a) { return {magnitude(a.low), magnitude(a.high)}; }
+  CORRAL_INLINE Half folded() const { return low + high; }
+};
+
+using Lanes8 = Register<Double8, Integers8>;
+using Lanes4x2 = Pair<Register<Double4, Integers4>>;
+using Lanes2x4 = Pair<Pair<Register<Double2, Integers2>>>;
+
+/// The eight lanes added in one fixed order.
+template <class Lanes>
+CORRAL_INLINE double sum(Lanes values) {
+  return values.folded().folded().folded();
+}
+
+/// The smallest lane; none may be NaN.
+template <class Lanes>
+CORRAL_INLINE double smallest(Lanes values) {
+  double v[8];
+  values.store(v);
+  double least = v[0];
+  for (const double value : v) least = value < least ? value : least;
+  return least;
+}
+
+/// Tells a body which lanes to use.
+template <class L>
+struct Kind {
+  using Lanes = L;
+};
+
+template <class Body>
+[[gnu::target("arch=x86-64-v4,prefer-vector-width=512"), gnu::flatten, gnu::noinline]] void run_avx512(Body& body) {
+  body(Kind<Lanes8>{});
+}
+template <class Body>
+[[gnu::target("arch=x86-64-v3"), gnu::flatten, gnu::noinline]] void run_avx2(Body& body) {
+  body(Kind<Lanes4x2>{});
+}
+template <class Body>
+[[gnu::flatten, gnu::noinline]] void run_baseline(Body& body) {
+  body(Kind<Lanes2x4>{});
+}
+
+}  // namespace lanes
+
+/// Number of lanes: columns that hot loops read are padded to a multiple of it.
+constexpr int kLanes = 8;
+
+constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+/// Starts every column at a cache line, so that no lane load straddles two.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class Other>
+  CacheLineAllocator(const CacheLineAllocator<Other>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T* from, std::size_t) { ::operator delete(from, std::align_val_t{64}); }
+  friend bool operator==(CacheLineAllocator, CacheLineAllocator) { return true; }
+  friend bool operator!=(CacheLineAllocator, CacheLineAllocator) { return false; }
+};
+using Column = std::vector<double, CacheLineAllocator<double>>;
+
+/// Runs a body compiled for the vector level of this machine; it does its arithmetic in the lanes that it is given:
+///
+///   vectorized([&](auto kind) {
+///     using Lanes = typename decltype(kind)::Lanes;
+///     ... Lanes::load(x) + Lanes::fill(1) ...
+///   });
+template <class Body>
+void vectorized(Body&& body) {
+  switch (vector_level()) {
+    case VectorLevel::Avx512:
+      return lanes::run_avx512(body);
+    case VectorLevel::Avx2:
+      return lanes::run_avx2(body);
+    case VectorLevel::Baseline:
+      return lanes::run_baseline(body);
+  }
+}
+
+}  // namespace corral
