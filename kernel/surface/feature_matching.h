@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/correspondence_set.h"
+#include "kernel/parallel.h"
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/mesh.h"
 
@@ -16,8 +17,9 @@ struct FeatureMatches {
 
 /// Exact L2 matching: one row per source feature (columns of D x N and D x M). Ties go to the lower target column.
 /// Nothing is returned if either side is empty.
-/// Cost      O(N M D) time, as blocked matrix products; the few nearest are measured again, difference by difference.
-FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target);
+/// Cost      That of find_two_nearest().
+FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
+                              const ParallelFor& parallel = one_by_one);
 
 /// The table of matches of two described surfaces: row i is source keypoint i and its nearest target keypoint. Several
 /// rows may share a target; no mutual check, no cut.
