@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <new>
+#include <type_traits>
 #include <vector>
 
 namespace corral {
@@ -18,7 +19,8 @@ void force_vector_level(VectorLevel level);
 
 // Eight doubles that are added, compared and selected together, in as many registers as the machine needs. Every level
 // computes each lane by the same IEEE operations (nothing is contracted) and sums the lanes in one fixed order, so that
-// results are the same to the last bit on every machine.
+// results are the same to the last bit on every machine. Beside them sixteen floats, for filters that may be wrong by a
+// known amount.
 
 namespace lanes {
 
@@ -27,16 +29,20 @@ namespace lanes {
 using Double2 [[gnu::vector_size(16)]] = double;
 using Double4 [[gnu::vector_size(32)]] = double;
 using Double8 [[gnu::vector_size(64)]] = double;
+using Float4 [[gnu::vector_size(16)]] = float;
+using Float8 [[gnu::vector_size(32)]] = float;
+using Float16 [[gnu::vector_size(64)]] = float;
 using Integers2 [[gnu::vector_size(8)]] = std::int32_t;
 using Integers4 [[gnu::vector_size(16)]] = std::int32_t;
 using Integers8 [[gnu::vector_size(32)]] = std::int32_t;
+using Integers16 [[gnu::vector_size(64)]] = std::int32_t;
 
 /// A comparison of registers, made where it is used: compilers keep it in a mask register then, and nowhere else.
 enum class Order { Less, LessEqual, Equal };
-template <Order kOrder, class Doubles>
+template <Order kOrder, class Numbers>
 struct Comparison {
-  Doubles a, b;
-  CORRAL_INLINE Doubles choose(Doubles yes, Doubles no) const {
+  Numbers a, b;
+  CORRAL_INLINE Numbers choose(Numbers yes, Numbers no) const {
     if constexpr (kOrder == Order::Less)
       return a < b ? yes : no;
     else if constexpr (kOrder == Order::LessEqual)
@@ -47,52 +53,63 @@ struct Comparison {
 };
 
 /// One register.
-template <class Doubles, class Integers>
+template <class Numbers, class Integers>
 struct Register {
-  static constexpr int kCount = sizeof(Doubles) / sizeof(double);
-  Doubles value;
+  using Number = std::remove_reference_t<decltype(Numbers{}[0])>;
+  static constexpr int kCount = sizeof(Numbers) / sizeof(Number);
+  Numbers value;
 
-  static CORRAL_INLINE Register fill(double number) { return {number - Doubles{}}; }
-  static CORRAL_INLINE Register load(const double* from) {
+  /// Outside of inner loops, unless the number comes from memory there: g++ 12 may set lane by lane.
+  static CORRAL_INLINE Register fill(Number number) { return {number - Numbers{}}; }
+  static CORRAL_INLINE Register load(const Number* from) {
     Register result;
-    __builtin_memcpy(&result.value, from, sizeof(Doubles));
+    __builtin_memcpy(&result.value, from, sizeof(Numbers));
     return result;
   }
-  CORRAL_INLINE void store(double* to) const { __builtin_memcpy(to, &value, sizeof(Doubles)); }
-  /// Whole numbers, as such.
-  CORRAL_INLINE void store(std::int32_t* to) const {
-    const Integers integers = __builtin_convertvector(value, Integers);
-    __builtin_memcpy(to, &integers, sizeof(Integers));
+  /// As numbers of that type, which must be able to hold them: floats rounded, whole numbers as such.
+  template <class Stored>
+  CORRAL_INLINE void store(Stored* to) const {
+    using Vector [[gnu::vector_size(kCount * sizeof(Stored))]] = Stored;
+    Vector stored;
+    if constexpr (sizeof(Stored) == 1)
+      stored = __builtin_convertvector(__builtin_convertvector(value, Integers), Vector);
+    else
+      stored = __builtin_convertvector(value, Vector);
+    __builtin_memcpy(to, &stored, sizeof(Vector));
   }
 
   friend CORRAL_INLINE Register operator+(Register a, Register b) { return {a.value + b.value}; }
   friend CORRAL_INLINE Register operator-(Register a, Register b) { return {a.value - b.value}; }
   friend CORRAL_INLINE Register operator*(Register a, Register b) { return {a.value * b.value}; }
   friend CORRAL_INLINE Register operator/(Register a, Register b) { return {a.value / b.value}; }
-  friend CORRAL_INLINE Comparison<Order::Less, Doubles> operator<(Register a, Register b) { return {a.value, b.value}; }
-  friend CORRAL_INLINE Comparison<Order::LessEqual, Doubles> operator<=(Register a, Register b) {
+  friend CORRAL_INLINE Comparison<Order::Less, Numbers> operator<(Register a, Register b) { return {a.value, b.value}; }
+  friend CORRAL_INLINE Comparison<Order::LessEqual, Numbers> operator<=(Register a, Register b) {
     return {a.value, b.value};
   }
-  friend CORRAL_INLINE Comparison<Order::Equal, Doubles> operator==(Register a, Register b) {
+  friend CORRAL_INLINE Comparison<Order::Equal, Numbers> operator==(Register a, Register b) {
     return {a.value, b.value};
   }
   template <Order kOrder>
-  friend CORRAL_INLINE Register select(Comparison<kOrder, Doubles> mask, Register a, Register b) {
+  friend CORRAL_INLINE Register select(Comparison<kOrder, Numbers> mask, Register a, Register b) {
     return {mask.choose(a.value, b.value)};
   }
   friend CORRAL_INLINE Register smaller(Register a, Register b) { return {a.value < b.value ? a.value : b.value}; }
+  friend CORRAL_INLINE Register larger(Register a, Register b) { return {a.value < b.value ? b.value : a.value}; }
   friend CORRAL_INLINE Register square_root(Register a) {
-    double numbers[kCount];
+    Number numbers[kCount];
     a.store(numbers);
-    for (double& number : numbers) number = __builtin_sqrt(number);
+    for (Number& number : numbers) number = __builtin_sqrt(number);
     return load(numbers);
   }
   friend CORRAL_INLINE Register magnitude(Register a) { return {a.value < 0 ? -a.value : a.value}; }
   /// Lane i added to lane i + half the count.
   CORRAL_INLINE auto folded() const {
-    if constexpr (kCount == 8)
-      return Register<Double4, Integers4>{__builtin_shufflevector(value, value, 0, 1, 2, 3) +
-                                          __builtin_shufflevector(value, value, 4, 5, 6, 7)};
+    if constexpr (kCount == 16)
+      return Register<Float8, Integers8>{__builtin_shufflevector(value, value, 0, 1, 2, 3, 4, 5, 6, 7) +
+                                         __builtin_shufflevector(value, value, 8, 9, 10, 11, 12, 13, 14, 15)};
+    else if constexpr (kCount == 8)
+      return Register<std::conditional_t<sizeof(Number) == 4, Float4, Double4>, Integers4>{
+          __builtin_shufflevector(value, value, 0, 1, 2, 3) + __builtin_shufflevector(value, value, 4, 5, 6, 7)};
     else if constexpr (kCount == 4)
       return Register<Double2, Integers2>{__builtin_shufflevector(value, value, 0, 1) +
                                           __builtin_shufflevector(value, value, 2, 3)};
@@ -112,10 +129,12 @@ struct Pair {
   static constexpr int kCount = 2 * Half::kCount;
   Half low, high;
 
-  static CORRAL_INLINE Pair fill(double number) { return {Half::fill(number), Half::fill(number)}; }
-  static CORRAL_INLINE Pair load(const double* from) { return {Half::load(from), Half::load(from + Half::kCount)}; }
-  template <class Number>
-  CORRAL_INLINE void store(Number* to) const {
+  using Number = typename Half::Number;
+
+  static CORRAL_INLINE Pair fill(Number number) { return {Half::fill(number), Half::fill(number)}; }
+  static CORRAL_INLINE Pair load(const Number* from) { return {Half::load(from), Half::load(from + Half::kCount)}; }
+  template <class Stored>
+  CORRAL_INLINE void store(Stored* to) const {
     low.store(to), high.store(to + Half::kCount);
   }
 
@@ -137,6 +156,7 @@ struct Pair {
     return {select(mask.low, a.low, b.low), select(mask.high, a.high, b.high)};
   }
   friend CORRAL_INLINE Pair smaller(Pair a, Pair b) { return {smaller(a.low, b.low), smaller(a.high, b.high)}; }
+  friend CORRAL_INLINE Pair larger(Pair a, Pair b) { return {larger(a.low, b.low), larger(a.high, b.high)}; }
   friend CORRAL_INLINE Pair square_root(Pair a) { return {square_root(a.low), square_root(a.high)}; }
   friend CORRAL_INLINE Pair magnitude(Pair a) { return {magnitude(a.low), magnitude(a.high)}; }
   CORRAL_INLINE Half folded() const { return low + high; }
@@ -145,6 +165,9 @@ struct Pair {
 using Lanes8 = Register<Double8, Integers8>;
 using Lanes4x2 = Pair<Register<Double4, Integers4>>;
 using Lanes2x4 = Pair<Pair<Register<Double2, Integers2>>>;
+using Floats16 = Register<Float16, Integers16>;
+using Floats8x2 = Pair<Register<Float8, Integers8>>;
+using Floats4x4 = Pair<Pair<Register<Float4, Integers4>>>;
 
 /// The eight lanes added in one fixed order.
 template <class Lanes>
@@ -163,22 +186,23 @@ CORRAL_INLINE double smallest(Lanes values) {
 }
 
 /// Tells a body which lanes to use.
-template <class L>
+template <class L, class F>
 struct Kind {
-  using Lanes = L;
+  using Lanes = L;   ///< eight doubles
+  using Floats = F;  ///< sixteen floats
 };
 
 template <class Body>
 [[gnu::target("arch=x86-64-v4,prefer-vector-width=512"), gnu::flatten, gnu::noinline]] void run_avx512(Body& body) {
-  body(Kind<Lanes8>{});
+  body(Kind<Lanes8, Floats16>{});
 }
 template <class Body>
 [[gnu::target("arch=x86-64-v3"), gnu::flatten, gnu::noinline]] void run_avx2(Body& body) {
-  body(Kind<Lanes4x2>{});
+  body(Kind<Lanes4x2, Floats8x2>{});
 }
 template <class Body>
 [[gnu::flatten, gnu::noinline]] void run_baseline(Body& body) {
-  body(Kind<Lanes2x4>{});
+  body(Kind<Lanes2x4, Floats4x4>{});
 }
 
 }  // namespace lanes

@@ -16,12 +16,13 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Columns that are not negative and of unit length, as histograms are.
+/// Columns that are not negative and of unit length, as histograms are. No entry is zero: features without a bin in common
+/// are all as far apart, and rounding would choose between them.
 Eigen::MatrixXd features(int size, int count, std::uint64_t seed) {
   RandomStream random(seed);
   Eigen::MatrixXd columns(size, count);
   for (int column = 0; column < count; ++column)
-    for (int row = 0; row < size; ++row) columns(row, column) = random.uniform() < 0.3 ? random.uniform() : 0;
+    for (int row = 0; row < size; ++row) columns(row, column) = (random.uniform() < 0.3 ? 1 : 0.02) * random.uniform();
   columns.colwise().normalize();
   return columns;
 }
