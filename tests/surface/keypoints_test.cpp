@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
@@ -13,6 +11,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
+#include "tests/support/renumbering.h"
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -178,20 +177,9 @@ TEST(DetectHarris, RigidMotionKeepsTheKeypoints) {
 TEST(DetectHarris, PermutedVerticesGiveThePermutedKeypoints) {
   const Mesh mesh = testing::bumpy_sphere(4, 9);
   const double resolution = point_resolution(mesh.vertices);
-  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
-  Indices old_row(count);
-  std::iota(old_row.begin(), old_row.end(), 0);
-  RandomStream random(10);
-  for (std::size_t i = count; i > 1; --i) std::swap(old_row[i - 1], old_row[random.below(i)]);
-  Mesh shuffled;
-  shuffled.vertices.resize(mesh.vertices.rows(), 3);
-  for (std::size_t i = 0; i < count; ++i)
-    shuffled.vertices.row(static_cast<Eigen::Index>(i)) = mesh.vertices.row(old_row[i]);
-
-  Indices found;
-  for (const int row : detect(shuffled, resolution).vertices) found.push_back(old_row[static_cast<std::size_t>(row)]);
-  std::sort(found.begin(), found.end());
-  EXPECT_EQ(found, detect(mesh, resolution).vertices);
+  const Indices old_row = testing::shuffled_rows(mesh.vertices.rows(), 10);
+  const Keypoints found = detect(testing::renumbered(mesh, old_row), resolution);
+  EXPECT_EQ(testing::by_old_name(found.vertices, old_row), detect(mesh, resolution).vertices);
 }
 
 TEST(DetectHarris, TooLittleSurfaceGivesNone) {
