@@ -140,8 +140,9 @@ void add_products(const Votes& votes, int lanes, Histogram& histogram) {
       double weight = votes.counts[lane];
       int bin = votes.own[lane];
       for (int axis = 0; axis < Votes::kAxes; ++axis) {
-        const double share = votes.share[axis][lane];
         const int beside = votes.beside[axis][lane];
+        const bool has_azimuth = axis < 3 || beside != kLost;  // on the z axis the whole vote stays
+        const double share = has_azimuth ? votes.share[axis][lane] : 0;
         const bool aside = corner >> axis & 1;
         weight *= aside ? (beside == kLost ? 0 : share) : 1 - share;
         if (aside && beside != kLost) bin += beside - votes.own[lane];
