@@ -80,7 +80,9 @@ TEST(HarrisResponse, VerticesExactlyAtTheRadiusCount) {
 }
 
 TEST(HarrisResponse, IsZeroOnFlatGroundAndAlongACylinder) {
-  EXPECT_LT(harris_response(testing::grid(15, 15).vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  const Mesh flat = testing::grid(15, 15);
+  EXPECT_LT(harris_response(flat.vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(harris_response(move_mesh(flat, random_motion(flat, 1)).vertices, 3.1).cwiseAbs().maxCoeff(), 1e-15);
   Points cylinder(30 * 20, 3);
   for (int row = 0; row < cylinder.rows(); ++row) {
     const double angle = 2 * std::acos(-1.0) * (row % 30) / 30;
@@ -180,6 +182,26 @@ TEST(DetectHarris, PermutedVerticesGiveThePermutedKeypoints) {
   const Indices old_row = testing::shuffled_rows(mesh.vertices.rows(), 10);
   const Keypoints found = detect(testing::renumbered(mesh, old_row), resolution);
   EXPECT_EQ(testing::by_old_name(found.vertices, old_row), detect(mesh, resolution).vertices);
+}
+
+TEST(DetectHarris, MostKeypointsComeBackUnderNoise) {
+  double near = 0, at = 0, all = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Mesh mesh = testing::bumpy_sphere(5, seed);
+    const double resolution = point_resolution(mesh.vertices);
+    const Mesh noisy = add_gaussian_noise(mesh, 0.05 * resolution, seed);
+    const PointIndex repeated(noisy.vertices(detect(noisy, resolution).vertices, Eigen::all));
+    for (const int row : detect(mesh, resolution).vertices) {
+      const auto nearest = repeated.nearest(mesh.vertices.row(row).transpose(), 1);
+      ASSERT_EQ(nearest.size(), 1u);
+      at += nearest[0].squared_distance <= resolution * resolution;
+      near += nearest[0].squared_distance <= 9 * resolution * resolution;
+      ++all;
+    }
+  }
+  EXPECT_GT(all, 200);
+  EXPECT_GT(near / all, 0.8) << "within 3 pr";
+  EXPECT_GT(at / all, 0.4) << "within 1 pr";
 }
 
 TEST(DetectHarris, TooLittleSurfaceGivesNone) {
