@@ -55,9 +55,11 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
       });
   if (!left.empty()) {
     const PointIndex index(vertices);
-    for (const int slot : left)
-      squares[static_cast<std::size_t>(slot)] =
-          nearest_by_tree(index, vertices.row(grid.row(slot)).transpose(), grid.size());
+    for (const int slot : left) {
+      const auto i = static_cast<std::size_t>(slot);  // duplicates do not count: thousands of them would take minutes
+      if (!is_duplicate(grid, i))
+        squares[i] = nearest_by_tree(index, vertices.row(grid.row(slot)).transpose(), grid.size());
+    }
   }
   double total = 0;
   int distinct = 0;

@@ -142,8 +142,9 @@ void add_products(const Votes& votes, int count, Histograms& histograms) {
       double weight = votes.counts[i];
       int bin = votes.own[i];
       for (int axis = 0; axis < Votes::kAxes; ++axis) {
-        const double share = votes.share[axis][i];
         const int beside = votes.beside[axis][i];
+        const bool has_azimuth = axis < 3 || beside != kLost;  // on the z axis the whole vote stays
+        const double share = has_azimuth ? votes.share[axis][i] : 0;
         const bool aside = corner >> axis & 1;
         weight *= aside ? (beside == kLost ? 0 : share) : 1 - share;
         if (aside && beside != kLost) bin += beside - votes.own[i];

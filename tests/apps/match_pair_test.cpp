@@ -10,6 +10,7 @@
 
 #include "kernel/error.h"
 #include "kernel/surface/resolution.h"
+#include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 
@@ -77,6 +78,63 @@ TEST(MatchPair, AMeshMatchesItself) {
   EXPECT_GT(pair.matches.second_feature_distance.minCoeff(), 0);
   EXPECT_EQ(pair.matches.source_centroid.value(), vertex_centroid(mesh));
   EXPECT_NO_THROW(pair.matches.validate());
+}
+
+TEST(MatchPair, ThreadsAndRegistersDoNotMatter) {
+  const Mesh source = testing::bumpy_sphere(4, 1), target = testing::bumpy_sphere(4, 2);
+  MatchSettings settings;
+  settings.threads = 1;
+  const MatchedPair expected = match_pair(source, target, settings);
+  ASSERT_GT(expected.matches.size(), 10);
+  const auto expect_same = [&] {
+    const MatchedPair found = match_pair(source, target, settings);
+    EXPECT_EQ(found.report.resolution, expected.report.resolution);
+    EXPECT_EQ(found.matches.source_keypoints, expected.matches.source_keypoints);
+    EXPECT_EQ(found.matches.target_keypoints, expected.matches.target_keypoints);
+    EXPECT_TRUE(found.matches.source_frames == expected.matches.source_frames);
+    EXPECT_TRUE(found.matches.target_frames == expected.matches.target_frames);
+    EXPECT_TRUE(found.matches.feature_distance == expected.matches.feature_distance);
+    EXPECT_TRUE(found.matches.second_feature_distance == expected.matches.second_feature_distance);
+  };
+  for (const int threads : {0, 2, 5}) {
+    settings.threads = threads;
+    expect_same();
+    for (const VectorLevel level : testing::available_levels()) {
+      const testing::ForcedLevel forced(level);
+      expect_same();
+    }
+  }
+}
+
+TEST(MatchPair, WhatAThreadRefusesIsRefused) {
+  // 5000 vertices within the radius of each other: found out in the loop that is spread over the threads.
+  Mesh crowd{Points(5000, 3), Triangles(0, 3)};
+  for (int row = 0; row < 5000; ++row) crowd.vertices.row(row) << row * 1e-9, 0.5 * (row % 2), 0;
+  MatchSettings settings = settings_of("1");
+  for (const int threads : {1, 2, 5}) {
+    settings.threads = threads;
+    EXPECT_THAT(refusal_of([&] { match_pair(crowd, crowd, settings); }), HasSubstr("over 500 vertices on average"));
+  }
+}
+
+TEST(MatchPair, SettingsAreChecked) {
+  const auto refused = [](const auto& change) {
+    MatchSettings settings;
+    change(settings);
+    const std::string said = refusal_of([&] { settings.validate(); });
+    EXPECT_EQ(refusal_of([&] { match_pair(testing::icosphere(1), testing::icosphere(1), settings); }), said);
+    return said;
+  };
+  EXPECT_THAT(refused([](MatchSettings& s) { s.detector = "sift"; }), HasSubstr("harris|harris-mesh|uniform"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.normals = ""; }), HasSubstr("mesh|origin"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.shot = "PCL"; }), HasSubstr("additive|pcl|product"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.sensor = {1, 2}; }), HasSubstr("three finite coordinates"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.sensor[1] = HUGE_VAL; }), HasSubstr("three finite coordinates"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.threads = -1; }), HasSubstr("--threads is -1"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.keypoint_radius_pr = 0; }), HasSubstr("--keypoint-radius-pr"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.support_radius_pr = HUGE_VAL; }), HasSubstr("--support-radius-pr"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.matching.matcher = "tree"; }), HasSubstr("exact|flann"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.harris_mesh.rings = 0; }), HasSubstr("rings"));
 }
 
 TEST(MatchPair, TheReportAddsUp) {

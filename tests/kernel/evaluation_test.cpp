@@ -84,6 +84,49 @@ TEST(ScoreGrouping, BadRowsAreRefused) {
   EXPECT_THROW(score_grouping({}, {0}), InvalidInput);
 }
 
+/// Row i: a frame on the source, and on the target the one that the truth makes of it, turned by so many degrees more.
+CorrespondenceSet table_of_frames(const RigidTransform& truth, const std::vector<double>& degrees) {
+  RandomStream random(2);
+  CorrespondenceSet table;
+  for (const double turned : degrees) {
+    table.source_frames.push_back(random.rotation());
+    const Eigen::Matrix3d more = turn(turned * kPi / 180, random.direction()).rotation;
+    table.target_frames.push_back(table.source_frames.back() * truth.rotation.transpose() * more.transpose());
+  }
+  table.source_points = table.target_points = Points::Zero(static_cast<Eigen::Index>(degrees.size()), 3);
+  return table;
+}
+
+TEST(FrameRepeatability, CountsRightMatchesWithinTheLimit) {
+  RandomStream random(3);
+  const RigidTransform truth{random.rotation(), {1, 2, 3}};
+  const CorrespondenceSet table = table_of_frames(truth, {0, 9.99, 10.01, 180, 1, 3});
+  const FrameRepeatability all = frame_repeatability(table, truth, std::vector<bool>(6, true));
+  EXPECT_EQ(all.compared, 6);
+  EXPECT_EQ(all.agreeing, 4);
+  EXPECT_DOUBLE_EQ(all.share().value(), 4.0 / 6);
+  const FrameRepeatability some = frame_repeatability(table, truth, {true, false, true, true, false, false});
+  EXPECT_EQ(some.compared, 3);
+  EXPECT_EQ(some.agreeing, 1);
+  EXPECT_EQ(frame_repeatability(table, truth, std::vector<bool>(6, true), 2).agreeing, 2);
+  EXPECT_EQ(frame_repeatability(table, truth, std::vector<bool>(6, true), 180).agreeing, 6);
+  EXPECT_EQ(frame_repeatability(table, {}, std::vector<bool>(6, true), 1).agreeing, 0) << "under another motion";
+}
+
+TEST(FrameRepeatability, WithoutAFrameThereIsNothingToCompare) {
+  CorrespondenceSet table = table_of_frames({}, {0, 0, 0, 0});
+  table.source_frames[0].setZero();
+  table.target_frames[1].setConstant(std::nan(""));
+  table.target_frames[2].row(1) *= -1;  // left-handed
+  const FrameRepeatability found = frame_repeatability(table, {}, std::vector<bool>(4, true));
+  EXPECT_EQ(found.compared, 1);
+  EXPECT_EQ(found.agreeing, 1);
+  EXPECT_FALSE(frame_repeatability(table, {}, std::vector<bool>(4, false)).share().has_value());
+  table.target_frames.clear();
+  EXPECT_EQ(frame_repeatability(table, {}, std::vector<bool>(4, true)).compared, 0);
+  EXPECT_FALSE(frame_repeatability({}, {}, {}).share().has_value());
+}
+
 TEST(RotationError, IsAccurateAtBothEnds) {
   RandomStream random(1);
   for (int trial = 0; trial < 50; ++trial) {

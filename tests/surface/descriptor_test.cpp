@@ -107,6 +107,37 @@ TEST(DescribeShot, SupportIsCountedWithoutTheKeypoint) {
   }
 }
 
+TEST(DescribeShot, TheRimIsInsideButForPcl) {
+  // Twelve vertices near the first, and twelve exactly at the radius.
+  const Points near = 0.5 * testing::icosphere(0).vertices;
+  Points vertices(25, 3);
+  vertices.setZero();
+  vertices.middleRows(1, 12) = near;
+  for (int row = 13; row < 25; ++row) vertices(row, row % 3) = row % 2 == 0 ? 2 : -2;
+  const Points normals = Eigen::RowVector3d(0, 0, 1).replicate(25, 1);
+  for (const char* form : {"additive", "pcl", "product"}) {
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 24, form}).vertices.size(), form[1] != 'c') << form;
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 12, form}).vertices.size(), 1u) << form;
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 25, form}).vertices.size(), 0u) << form;
+  }
+}
+
+TEST(DescribeShot, EveryFormAgreesWithTheReference) {
+  const Mesh mesh = testing::bumpy_sphere(4, 10);
+  const Points normals = estimate_normals(mesh);
+  const double resolution = point_resolution(mesh.vertices);
+  const Indices rows = some_rows(mesh, 61);
+  for (const char* form : {"additive", "pcl", "product"}) {
+    const Descriptors found = describe_shot(mesh.vertices, normals, rows, resolution, {15, 10, form});
+    ASSERT_EQ(found.vertices, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto expected = testing::reference_shot_histogram(mesh.vertices, normals, vertex_of(mesh, rows[i]),
+                                                              found.frames[i], 15 * resolution, form);
+      EXPECT_LT((found.features.col(static_cast<Eigen::Index>(i)) - *expected).cwiseAbs().maxCoeff(), 1e-9) << form;
+    }
+  }
+}
+
 TEST(DescribeShot, OptionsAreChecked) {
   const Mesh mesh = testing::icosphere(1);
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {

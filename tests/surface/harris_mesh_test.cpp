@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "kernel/error.h"
 #include "kernel/random.h"
@@ -15,6 +14,7 @@
 #include "tests/support/harris_mesh_cases.h"
 #include "tests/support/meshes.h"
 #include "tests/support/reference_harris_mesh.h"
+#include "tests/support/renumbering.h"
 
 namespace corral {
 namespace {
@@ -28,23 +28,8 @@ using testing::kNeighborhoods;
 using testing::kSelections;
 using testing::noisy_grid;
 using testing::options_of;
-
-/// Old row of each new row, at random.
-Indices shuffle(Eigen::Index count, std::uint64_t seed) {
-  Indices old_row(static_cast<std::size_t>(count));
-  std::iota(old_row.begin(), old_row.end(), 0);
-  RandomStream random(seed);
-  for (std::size_t i = old_row.size(); i > 1; --i) std::swap(old_row[i - 1], old_row[random.below(i)]);
-  return old_row;
-}
-
-Mesh renumbered(const Mesh& mesh, const Indices& old_row) {
-  Indices new_row(old_row.size());
-  for (std::size_t i = 0; i < old_row.size(); ++i) new_row[static_cast<std::size_t>(old_row[i])] = static_cast<int>(i);
-  Mesh other{mesh.vertices(old_row, Eigen::all), mesh.triangles};
-  for (int& corner : other.triangles.reshaped()) corner = new_row[static_cast<std::size_t>(corner)];
-  return other;
-}
+using testing::renumbered;
+using testing::shuffled_rows;
 
 TEST(HarrisMesh, AgreesWithTheReference) {
   int found_by_all = 0;
@@ -102,9 +87,9 @@ TEST(HarrisMesh, RigidMotionAndAnyScaleChangeNothing) {
 TEST(HarrisMesh, RenumberedVerticesGiveTheSameKeypointsToTheLastBit) {
   for (const Mesh& mesh : {testing::bumpy_sphere(4, 13), noisy_grid(14)}) {
     const double resolution = point_resolution(mesh.vertices);
-    const Indices old_row = shuffle(mesh.vertices.rows(), 15);
+    const Indices old_row = shuffled_rows(mesh.vertices.rows(), 15);
     Mesh other = renumbered(mesh, old_row);
-    other.triangles = other.triangles(shuffle(mesh.triangles.rows(), 16), Eigen::all).eval();
+    other.triangles = other.triangles(shuffled_rows(mesh.triangles.rows(), 16), Eigen::all).eval();
     for (const char* neighborhood : kNeighborhoods)
       for (const char* selection : kSelections) {
         const HarrisMeshOptions options = options_of(neighborhood, selection);

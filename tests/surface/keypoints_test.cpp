@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
@@ -13,6 +11,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
+#include "tests/support/renumbering.h"
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -81,7 +80,9 @@ TEST(HarrisResponse, VerticesExactlyAtTheRadiusCount) {
 }
 
 TEST(HarrisResponse, IsZeroOnFlatGroundAndAlongACylinder) {
-  EXPECT_LT(harris_response(testing::grid(15, 15).vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  const Mesh flat = testing::grid(15, 15);
+  EXPECT_LT(harris_response(flat.vertices, 3).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(harris_response(move_mesh(flat, random_motion(flat, 1)).vertices, 3.1).cwiseAbs().maxCoeff(), 1e-15);
   Points cylinder(30 * 20, 3);
   for (int row = 0; row < cylinder.rows(); ++row) {
     const double angle = 2 * std::acos(-1.0) * (row % 30) / 30;
@@ -178,20 +179,29 @@ TEST(DetectHarris, RigidMotionKeepsTheKeypoints) {
 TEST(DetectHarris, PermutedVerticesGiveThePermutedKeypoints) {
   const Mesh mesh = testing::bumpy_sphere(4, 9);
   const double resolution = point_resolution(mesh.vertices);
-  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
-  Indices old_row(count);
-  std::iota(old_row.begin(), old_row.end(), 0);
-  RandomStream random(10);
-  for (std::size_t i = count; i > 1; --i) std::swap(old_row[i - 1], old_row[random.below(i)]);
-  Mesh shuffled;
-  shuffled.vertices.resize(mesh.vertices.rows(), 3);
-  for (std::size_t i = 0; i < count; ++i)
-    shuffled.vertices.row(static_cast<Eigen::Index>(i)) = mesh.vertices.row(old_row[i]);
+  const Indices old_row = testing::shuffled_rows(mesh.vertices.rows(), 10);
+  const Keypoints found = detect(testing::renumbered(mesh, old_row), resolution);
+  EXPECT_EQ(testing::by_old_name(found.vertices, old_row), detect(mesh, resolution).vertices);
+}
 
-  Indices found;
-  for (const int row : detect(shuffled, resolution).vertices) found.push_back(old_row[static_cast<std::size_t>(row)]);
-  std::sort(found.begin(), found.end());
-  EXPECT_EQ(found, detect(mesh, resolution).vertices);
+TEST(DetectHarris, MostKeypointsComeBackUnderNoise) {
+  double near = 0, at = 0, all = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Mesh mesh = testing::bumpy_sphere(5, seed);
+    const double resolution = point_resolution(mesh.vertices);
+    const Mesh noisy = add_gaussian_noise(mesh, 0.05 * resolution, seed);
+    const PointIndex repeated(noisy.vertices(detect(noisy, resolution).vertices, Eigen::all));
+    for (const int row : detect(mesh, resolution).vertices) {
+      const auto nearest = repeated.nearest(mesh.vertices.row(row).transpose(), 1);
+      ASSERT_EQ(nearest.size(), 1u);
+      at += nearest[0].squared_distance <= resolution * resolution;
+      near += nearest[0].squared_distance <= 9 * resolution * resolution;
+      ++all;
+    }
+  }
+  EXPECT_GT(all, 200);
+  EXPECT_GT(near / all, 0.8) << "within 3 pr";
+  EXPECT_GT(at / all, 0.4) << "within 1 pr";
 }
 
 TEST(DetectHarris, TooLittleSurfaceGivesNone) {

@@ -5,14 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/random.h"
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/keypoints.h"
 #include "kernel/surface/normals.h"
-#include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
 #include "kernel/surface/topology.h"
 #include "tests/support/meshes.h"
@@ -58,35 +55,6 @@ TEST(Mesh, RoughSurfacesGoThroughEveryStep) {
     const Descriptors found = describe(mesh, point_resolution(mesh.vertices));
     EXPECT_GT(found.features.cols(), 5);
     EXPECT_TRUE(found.features.allFinite());
-  }
-}
-
-TEST(Mesh, OrderOfTheVerticesDoesNotMatter) {
-  // The noise leaves no two vertices at the same distance from a third.
-  const Mesh mesh = add_gaussian_noise(testing::bumpy_sphere(3, 3), 1e-3, 3);
-  const auto count = static_cast<std::size_t>(mesh.vertices.rows());
-  Indices old_row(count);
-  std::iota(old_row.begin(), old_row.end(), 0);
-  RandomStream random(4);
-  for (std::size_t i = count; i > 1; --i) std::swap(old_row[i - 1], old_row[random.below(i)]);
-  Indices new_row(count);
-  for (std::size_t i = 0; i < count; ++i) new_row[static_cast<std::size_t>(old_row[i])] = static_cast<int>(i);
-  const Mesh shuffled{mesh.vertices(old_row, Eigen::all),
-                      mesh.triangles.unaryExpr([&](int row) { return new_row[static_cast<std::size_t>(row)]; })};
-
-  const double resolution = point_resolution(mesh.vertices);
-  EXPECT_NEAR(point_resolution(shuffled.vertices), resolution, 1e-14);
-  const Descriptors expected = describe(mesh, resolution), found = describe(shuffled, resolution);
-  ASSERT_EQ(found.vertices.size(), expected.vertices.size());
-  ASSERT_GT(found.vertices.size(), 5u);
-  for (std::size_t i = 0; i < expected.vertices.size(); ++i) {
-    const int there = new_row[static_cast<std::size_t>(expected.vertices[i])];
-    const auto at = std::find(found.vertices.begin(), found.vertices.end(), there);
-    ASSERT_NE(at, found.vertices.end());
-    const auto j = at - found.vertices.begin();
-    EXPECT_LT((found.frames[static_cast<std::size_t>(j)] - expected.frames[i]).norm(), 1e-9);
-    EXPECT_LT((found.features.col(j) - expected.features.col(static_cast<Eigen::Index>(i))).cwiseAbs().maxCoeff(),
-              1e-9);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kernel/random.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
 
@@ -16,7 +17,9 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using testing::lattice;
 using testing::points_of;
+using testing::uniform_points;
 
 Indices rows_of(const std::vector<Neighbor>& neighbors) {
   Indices rows;
@@ -47,32 +50,12 @@ void expect_agrees(const Points& points, const std::vector<double>& radii, std::
   }
 }
 
-Points uniform_points(int count, std::uint64_t seed) {
-  RandomStream random(seed);
-  Points points(count, 3);
-  for (int row = 0; row < count; ++row)
-    for (int axis = 0; axis < 3; ++axis) points(row, axis) = random.uniform(-1, 1);
-  return points;
-}
-
-/// Places with whole coordinates: distances between them tie in great numbers, and are exact.
-Points lattice(int side) {
-  Points points(side * side * side, 3);
-  for (int row = 0; row < points.rows(); ++row) points.row(row) << row % side, row / side % side, row / (side * side);
-  return points;
-}
-
 TEST(PointIndex, UniformPointsAgreeWithBruteForce) {
   expect_agrees(uniform_points(1500, 1), {0, 0.05, 0.2, 0.7, 9}, 2);
 }
 
 TEST(PointIndex, ClusteredPointsAgreeWithBruteForce) {
-  RandomStream random(3);
-  Points points(1200, 3);
-  for (int row = 0; row < points.rows(); ++row)
-    points.row(row) =
-        (row % 6) * Eigen::RowVector3d::Ones() + std::pow(10.0, -(row % 5)) * random.direction().transpose();
-  expect_agrees(points, {0, 1e-4, 1e-3, 0.1, 2, 20}, 4);
+  expect_agrees(testing::clustered_points(1200, 3), {0, 1e-4, 1e-3, 0.1, 2, 20}, 4);
 }
 
 TEST(PointIndex, FlatAndStraightPointsAgreeWithBruteForce) {

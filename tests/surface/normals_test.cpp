@@ -72,6 +72,22 @@ TEST(EstimateNormals, OfAFlatGridAreExact) {
   EXPECT_LT((normals.rowwise() - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(EstimateNormals, OfATiltedPlaneAreExact) {
+  const Mesh plane = testing::grid(12, 10, 0.1);
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    const RigidTransform motion = random_motion(plane, seed);
+    const Eigen::RowVector3d expected = motion.rotation.col(2).transpose();
+    EXPECT_LT((normals_of(move_mesh(plane, motion)).rowwise() - expected).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+TEST(EstimateNormals, OfASymmetricPatchOfASphereAreRadial) {
+  // The five or six around a vertex of the coarse icosahedron, and itself, lie symmetrically about its radius.
+  const Mesh mesh = testing::icosphere(2);
+  const Points normals = normals_of(mesh, 6);
+  for (int row = 0; row < 12; ++row) EXPECT_NEAR(normals.row(row).dot(mesh.vertices.row(row)), 1, 1e-12);
+}
+
 TEST(EstimateNormals, OfACylinderAreRadial) {
   Mesh mesh{Points(40 * 12, 3), Triangles(0, 3)};
   for (int row = 0; row < mesh.vertices.rows(); ++row) {

@@ -28,8 +28,11 @@ TEST(PointResolution, IsTheMeanOverVerticesNotOverPairs) {
 }
 
 TEST(PointResolution, AgreesWithBruteForce) {
-  const Points vertices = testing::bumpy_sphere(3, 4).vertices;
-  EXPECT_NEAR(point_resolution(vertices), testing::reference_resolution(vertices), 1e-14);
+  for (const Points& vertices :
+       {testing::bumpy_sphere(3, 4).vertices, testing::icosphere(3).vertices, testing::icosphere(4, 250.0).vertices}) {
+    const double expected = testing::reference_resolution(vertices);
+    EXPECT_NEAR(point_resolution(vertices), expected, 1e-13 * expected);
+  }
 }
 
 TEST(PointResolution, DuplicatesCountOnce) {

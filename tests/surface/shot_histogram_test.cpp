@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "kernel/random.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/resolution.h"
 #include "tests/support/meshes.h"
@@ -143,6 +144,58 @@ TEST(ShotHistogram, StraightDownGivesNothingToTheUpperHalf) {
   for (int azimuth = 0; azimuth < 8; ++azimuth)
     for (int shell = 0; shell < 2; ++shell)
       EXPECT_EQ(down(shot_bin(azimuth, shell, 1, 10)), 0) << azimuth << " " << shell;
+}
+
+// The slip of that library: what bin 9 owes to bin 10 goes to bin 0. Nothing else differs.
+TEST(ShotHistogram, PclWrapsTheCosineOfBinNine) {
+  for (int step = -1000; step <= 1000; ++step) {
+    const double cosine = step / 1000.0, position = 5 * (1 + cosine);
+    const Eigen::VectorXd additive = single(polar(1, 45, 22.5), cosine),
+                          pcl = single(polar(1, 45, 22.5), cosine, 4, "pcl");
+    Eigen::VectorXd expected = additive;
+    if (position > 9 && position < 9.5) {
+      std::swap(expected(shot_bin(4, 0, 1, 10)), expected(shot_bin(4, 0, 1, 0)));
+      EXPECT_GT(pcl(shot_bin(4, 0, 1, 0)), 0) << cosine;
+    }
+    EXPECT_EQ(pcl, expected) << cosine;
+  }
+}
+
+TEST(ShotHistogram, ProductSharesMultiply) {
+  // 0.1 off in cosine, 0.2 in radius, 0.3 in elevation, 0.4 in azimuth.
+  const Eigen::VectorXd histogram = single(polar(1.4, 45 + 27, 67.5 + 18), 0.22, 4, "product");
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(kShotSize);
+  for (const auto& [azimuth, a] : {std::pair(5, 0.6), std::pair(6, 0.4)})
+    for (const auto& [shell, r] : {std::pair(0, 0.8), std::pair(1, 0.2)})
+      for (const auto& [above, e] : {std::pair(1, 0.7), std::pair(0, 0.3)})
+        for (const auto& [cosine, c] : {std::pair(6, 0.9), std::pair(7, 0.1)})
+          expected(shot_bin(azimuth, shell, above, cosine)) = a * r * e * c;
+  EXPECT_NEAR(expected.sum(), 1, 1e-15);
+  EXPECT_LT((histogram - expected.normalized()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(ShotHistogram, ProductVotesAddUpToTheirNumber) {
+  // Between the outermost centres nothing is lost. Before its length is made one the histogram holds one vote a vertex.
+  RandomStream random(3);
+  Points vertices(500, 3), normals(500, 3);
+  for (int row = 0; row < 500; ++row) {
+    vertices.row(row) = polar(random.uniform(1, 3), random.uniform(45, 135), random.uniform(-180, 180)).transpose();
+    normals.row(row) = random.direction().transpose();
+  }
+  const auto frame = LocalReferenceFrame::Identity();
+  const auto found = shot_histogram(support_of(vertices, normals, {0, 0, 0}, 4), frame, 4, "product");
+  const Eigen::VectorXd votes = testing::reference_shot_votes(vertices, normals, {0, 0, 0}, frame, 4, "product");
+  EXPECT_NEAR(votes.sum(), 500, 1e-9);
+  EXPECT_NEAR(found.value().sum() * votes.norm(), 500, 1e-9);
+}
+
+TEST(ShotHistogram, OnTheZAxisThereIsNoAzimuthToShare) {
+  for (const double z : {1.0, -1.0, 3.0}) {
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(kShotSize);
+    expected(shot_bin(0, std::abs(z) > 2, z > 0, 6)) = 1;
+    for (const char* form : {"additive", "pcl", "product"})
+      EXPECT_LT((single({0, 0, z}, 0.2, 4, form) - expected).cwiseAbs().maxCoeff(), 1e-12) << z << " " << form;
+  }
 }
 
 }  // namespace
