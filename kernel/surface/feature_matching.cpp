@@ -26,6 +26,9 @@ void MatchingOptions::validate() const {
 FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                               const MatchingOptions& options, const ParallelFor& parallel) {
   options.validate();
+  for (const auto& [side, features] : {std::pair{"source", &source}, std::pair{"target", &target}})
+    if (!features->allFinite())
+      throw InvalidInput("match_features", std::string(side) + " features", "not finite", "finite numbers");
   FeatureMatches matches;
   if (source.cols() == 0 || target.cols() == 0) return matches;
   const NearestFeatures found = find(source, target, options, parallel);

@@ -29,7 +29,7 @@ struct FeatureMatches {
 /// L2 matching of the columns of D x N and D x M. `exact`: ties go to the lower target column, and any number of threads
 /// gives the same bits. `flann` is approximate and **not reproducible**: its trees take their seeds from the system; the
 /// distances to what it finds are exact. Nothing is returned if either side is empty.
-/// Throws    InvalidInput for a matcher that is not above.
+/// Throws    InvalidInput for a matcher that is not above, or a feature that is not finite.
 FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                               const MatchingOptions& options = {}, const ParallelFor& parallel = one_by_one);
 

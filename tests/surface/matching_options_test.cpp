@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernel/error.h"
 #include "kernel/random.h"
@@ -22,6 +23,7 @@ Eigen::MatrixXd features(int size, int count, std::uint64_t seed) {
   RandomStream random(seed);
   Eigen::MatrixXd columns(size, count);
   for (double& value : columns.reshaped()) value = random.uniform() < 0.3 ? random.uniform() : 0;
+  columns.row(0).array() += 0.01;  // none is zero, which has no length to divide by
   columns.colwise().normalize();
   return columns;
 }
@@ -33,6 +35,15 @@ Eigen::MatrixXd partners_of(const Eigen::MatrixXd& source, double off, std::uint
                 off * features(static_cast<int>(source.rows()), static_cast<int>(source.cols()), seed),
       features(static_cast<int>(source.rows()), static_cast<int>(source.cols()), seed + 1);
   return target;
+}
+
+TEST(MatchFeatures, FeaturesThatAreNotFiniteAreRefused) {
+  Eigen::MatrixXd good = features(12, 5, 1), bad = good;
+  bad(3, 2) = std::nan("");
+  EXPECT_THROW(match_features(bad, good), InvalidInput);
+  EXPECT_THROW(match_features(good, bad), InvalidInput);
+  bad(3, 2) = HUGE_VAL;
+  EXPECT_THROW(match_features(good, bad), InvalidInput);
 }
 
 TEST(MutualMatches, AreThoseThatBothSidesWant) {
