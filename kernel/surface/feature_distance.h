@@ -9,8 +9,8 @@
 
 namespace corral {
 
-// What is nearest: the one place where distances of features are defined. Only sources include this, and they are compiled
-// without contraction.
+// What is nearest: the one place where distances of features are defined. Only sources include this, compiled without
+// contraction.
 
 /// The squared distance: rows in sixteen sums by row mod 16, the first eight and the last eight added, then lanes::sum.
 template <class Lanes>

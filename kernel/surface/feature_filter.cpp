@@ -86,9 +86,9 @@ void FeatureFilter::score(Index first, int count, FilterScratch& scratch) const 
   score_columns(coarse_.data(), panels_, kCoarseNumbers, rows, scratch.scores.data(), scratch.tops.data());
 }
 
-// A score is s = x'.y' - |y'|^2 / 2 = (|x'|^2 - |x' - y'|^2) / 2. Let D^2 = `squared` be a distance as computed in double,
-// off by less than 1 + gamma. If the target is as near, then |x' - y'| <= D + both errors, so s is at least what that
-// gives. As computed in float, s is off by (steps + 2) u times the magnitudes that are added, |x'| |y'| + |y'|^2 / 2.
+// A score is s = x'.y' - |y'|^2 / 2 = (|x'|^2 - |x' - y'|^2) / 2. Let D^2 = `squared` be a distance as computed in
+// double, off by less than 1 + gamma. If the target is as near, then |x' - y'| <= D + both errors, so s is at least what
+// that gives. As computed in float, s is off by (steps + 2) u times the magnitudes that are added, |x'| |y'| + |y'|^2 / 2.
 float FeatureFilter::least_score(double squared, double own_squared, double own_error, int steps) const {
   const double gamma = static_cast<double>(target_.rows() + 32) * 0x1p-52;
   const double reach = std::sqrt(squared) * projection_.scale() * (1 + gamma) + kTiny + own_error + error_;

@@ -32,9 +32,9 @@ struct FilterScratch {
   Query queries[3];  ///< one looks for seeds, one for candidates, one measures them
 };
 
-/// Lower bounds |x' - y'| on all distances |x - y|, from a product of short rows of floats. Let D be the larger distance of
-/// two targets that were measured: a target with |x' - y'| > D + errors of both rows is farther than these two, and is not
-/// looked at again. What is left is judged by longer rows in the same way, and measured.
+/// Lower bounds |x' - y'| on all distances |x - y|, from a product of short rows of floats. Let D be the larger distance
+/// of two targets that were measured: a target with |x' - y'| > D + errors of both rows is farther than these two, and is
+/// not looked at again. What is left is judged by longer rows in the same way, and measured.
 class FeatureFilter {
  public:
   /// At least 64 targets; equal dimensions, at least one.

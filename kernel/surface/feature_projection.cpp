@@ -152,10 +152,10 @@ void FeatureProjection::round_directions(AlignedColumn& directions) {
     }
 }
 
-// Let Q be the directions in floats, u half the last place of 1, and R = (Q^T Q)^(1/2). Then Q R^-1 is orthonormal, of the
-// same span, and |R - I| is at most the defect |Q^T Q - I|, so that Q^T x is within |x| defect of an exact projection.
-// Rounding x moves it by u |x|; adding up in floats, chunk by chunk, changes each of the K products by as many u |x| as a
-// chunk has products and there are chunks.
+// Let Q be the directions in floats, u half the last place of 1, and R = (Q^T Q)^(1/2). Then Q R^-1 is orthonormal, of
+// the same span, and |R - I| is at most the defect |Q^T Q - I|, so that Q^T x is within |x| defect of an exact projection.
+// Rounding x moves it by u |x|; adding up in floats, chunk by chunk, changes each of the K products by as many u |x| as
+// a chunk has products and there are chunks.
 void FeatureProjection::measure_directions(const AlignedColumn& directions) {
   const auto length = static_cast<int>(dimension_);
   const double defect = orthonormality_defect(directions, padded(length)) + 1e-12;
@@ -203,8 +203,8 @@ void FeatureProjection::project(const Eigen::MatrixXd& features, Eigen::Index fi
   for (int row = 0; row < count; ++row) finish_row(out.error[row], row, out);
 }
 
-// The length of the rest is that of the missing side of a right-angled triangle. If |Q^T x| is off by e, its square r^2 is
-// off by at most w = e (2 |x| + e), and r by min(sqrt(w), w / r).
+// The length of the rest is that of the missing side of a right-angled triangle. If |Q^T x| is off by e, its square is off
+// by at most w = e (2 |x| + e), and so is that of the rest r; r itself is off by at most min(sqrt(w), w / r).
 void FeatureProjection::finish_row(double squared, int row, ProjectedFeatures& out) const {
   const double length = std::sqrt(squared), off = relative_error_ * length + kTiny;
   const double square_off = off * (2 * length + off) + (static_cast<double>(dimension_) + 64) * 0x1p-52 * squared;
@@ -213,8 +213,9 @@ void FeatureProjection::finish_row(double squared, int row, ProjectedFeatures& o
   std::copy_n(fine, kCoarseDirections, coarse);
   out.error[row] = 0;
   const auto finish = [&](float* numbers, int directions) {
-    double kept = 0;
-    for (int k = 0; k < directions; ++k) kept += static_cast<double>(numbers[k]) * numbers[k];
+    double parts[2] = {};
+    for (int k = 0; k < directions; ++k) parts[k % 2] += static_cast<double>(numbers[k]) * numbers[k];
+    const double kept = parts[0] + parts[1];
     const double rest = std::sqrt(std::max(0.0, squared - kept));
     const double rest_off = std::min(std::sqrt(square_off), rest > 0 ? square_off / rest : length + off);
     numbers[directions] = static_cast<float>(rest);

@@ -30,8 +30,8 @@ struct ProjectedFeatures {
 ///
 ///   |x - y|^2 = |Q^T (x - y)|^2 + |rest(x) - rest(y)|^2 >= |Q^T (x - y)|^2 + (|rest(x)| - |rest(y)|)^2 = |x' - y'|^2
 ///
-/// for any Q. A tight one spans the principal directions of the features; here those of a sample are followed by two rounds
-/// of block power iteration. That is deterministic and needs no factorisation.
+/// for any Q. A tight one spans the principal directions of the features; here those of a sample are followed by two
+/// rounds of block power iteration. That is deterministic and needs no factorisation.
 ///
 /// Error     Floats carry x' with an error of at most `error` (Euclidean), for every x; see project().
 class FeatureProjection {

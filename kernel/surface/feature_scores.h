@@ -22,8 +22,8 @@ struct FloatRows {
 /// sums[row][column] += sum over steps of rows[row][step] * panel[step][column].
 void add_products(const float* panel, int steps, const FloatRows& rows, float* sums);
 
-/// The same sums for `panels` panels one after the other: scores[row][panel * 64 + column], and the largest of each four
-/// columns of a panel that are sixteen apart: tops[row][panel * 16 + lane].
+/// The same sums for `panels` panels one after the other: scores[row][panel * 64 + column], and the largest of each
+/// four columns of a panel that are sixteen apart: tops[row][panel * 16 + lane].
 void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores, float* tops);
 
 /// The best of each sixteenth of the scores, 16 values and indices; `count` is a multiple of 16 above 0.

@@ -23,10 +23,10 @@ struct NearestFeatures {
 /// Nothing is returned if either side is empty. Every vector level and number of threads gives the same bits.
 ///
 /// Method    Lower bounds first, then the few distances that they leave open: features are projected on the principal
-///           directions of a sample, and keep the length of what is left (partial distances, as in exact searches that
-///           compare the norm of the residual). All pairs are bounded by a matrix product of 32 floats per feature, about
-///           1 % of them again by 64 floats, and about ten per source feature are measured in double. Bounds allow for
-///           every rounding, so that no distance is missed; where floats cannot hold the features, all are measured.
+///           directions of a sample, and keep the length of what is left (partial distances with the norm of the rest).
+///           All pairs are bounded by a matrix product of 32 floats per feature, about 1 % of them again by 64 floats,
+///           and about ten per source feature are measured in double. Bounds allow for every rounding, so that no
+///           distance is missed; where floats cannot hold the features, all are measured.
 /// Cost      O(D (N + M)) for the projection, 32 N M multiplications of floats; O(N M D) where all features are alike
 ///           or overflow. 100 floats per target, and 80 M floats per thread.
 NearestFeatures find_two_nearest(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,

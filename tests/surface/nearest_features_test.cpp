@@ -186,6 +186,18 @@ TEST(NearestFeatures, NearTies) {
     }
 }
 
+TEST(NearestFeatures, TargetsOnASphere) {
+  // All as far as any other but for a last few digits, so that only the rounding of floats decides what is seen first.
+  for (const Index rows : {3, 12, 30, 60, 352})
+    for (const double width : {1e-14, 1e-10, 1e-8}) {
+      MatrixXd target = uniform(rows, 600, 44);
+      target.colwise().normalize();
+      const Eigen::VectorXd center = 3 * uniform(rows, 1, 46);
+      const MatrixXd source = (width * uniform(rows, 300, 45)).colwise() + center;
+      expect_exact(source, target.colwise() + center);
+    }
+}
+
 TEST(NearestFeatures, HugeAndTinyNumbers) {
   for (const double size : {1e-300, 1e-160, 1e-150, 1e-100, 1e-40, 1e-20, 1e20, 1e40, 1e100, 1e150, 1e160, 1e300}) {
     SCOPED_TRACE(size);
