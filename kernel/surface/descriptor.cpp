@@ -198,6 +198,13 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
                           const ShotOptions& options, const ParallelFor& parallel) {
   require_positive("describe_shot", "resolution", resolution);
   options.validate();
+  if (normals.rows() != vertices.rows())
+    throw InvalidInput("describe_shot", "number of normals", std::to_string(normals.rows()),
+                       "one per vertex, " + std::to_string(vertices.rows()));
+  for (const int vertex : keypoints)
+    if (vertex < 0 || vertex >= vertices.rows())
+      throw InvalidInput("describe_shot", "keypoint", std::to_string(vertex),
+                         "vertices 0 .. " + std::to_string(vertices.rows() - 1));
   const double radius = options.radius_pr * resolution;
   const SupportFinder finder(vertices, normals, radius, options.form != "pcl");
   const auto order = finder.walk(keypoints);

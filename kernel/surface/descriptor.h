@@ -72,7 +72,8 @@ struct Descriptors {
 
 /// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part). Any number of threads, and any
 /// numbering of the vertices, gives the same bits.
-/// Throws    InvalidInput if an option or the resolution is out of range.
+/// Throws    InvalidInput if an option, the resolution or a keypoint is out of range, or the normals are not as many as
+///           the vertices.
 Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
                           const ShotOptions& options = {}, const ParallelFor& parallel = one_by_one);
 

@@ -26,7 +26,12 @@ int block_count(const PointGrid& grid) { return (grid.cells() + kCellsPerBlock -
 class HarrisOperator {
  public:
   HarrisOperator(const PointGrid& grid, const CellNeighborhoods& around, double radius)
-      : grid_(grid), around_(around), squared_(radius * radius), fits_(grid.size()), response_(grid.x().size(), 0.0) {}
+      : grid_(grid),
+        around_(around),
+        squared_(radius * radius),
+        most_(std::max(kAlwaysAccepted, kLargestMeanNeighborhood * grid.size())),
+        fits_(grid.size()),
+        response_(grid.x().size(), 0.0) {}
 
   AlignedColumn run(const ParallelFor& parallel) {
     parallel(block_count(grid_), [this](int block) {
@@ -55,14 +60,14 @@ class HarrisOperator {
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
         const auto i = static_cast<std::size_t>(slot);
         neighbors += fits_.fit<Lanes>(i, grid_, around_.begin(cell), around_.end(cell), i, squared_);
+        if (neighbors > most_) count(neighbors);  // a crowd: to its end it would take long
       }
     count(neighbors);
   }
 
   /// Refuses a radius that holds so many vertices that it cannot be meant.
   void count(std::int64_t neighbors) {
-    const std::int64_t most = std::max(kAlwaysAccepted, kLargestMeanNeighborhood * grid_.size());
-    if ((neighbors_ += neighbors) > most)
+    if ((neighbors_ += neighbors) > most_)
       throw InvalidInput("detect_harris", "keypoint radius",
                          to_text(std::sqrt(squared_)) + " mesh units, which holds over " +
                              std::to_string(kLargestMeanNeighborhood) + " vertices on average",
@@ -101,6 +106,7 @@ class HarrisOperator {
   const PointGrid& grid_;
   const CellNeighborhoods& around_;
   double squared_;
+  std::int64_t most_;  // neighbours in all
   PlaneFits fits_;
   AlignedColumn response_;
   std::atomic<std::int64_t> neighbors_{0};

@@ -69,6 +69,7 @@ struct PlaneFits {
   AlignedColumn xx, xy, xz, yy, yz, zz;
   AlignedColumn nx, ny, nz;
 
+  /// Room for so many, filled up to the step of solve().
   explicit PlaneFits(int count) {
     for (AlignedColumn* column : {&xx, &xy, &xz, &yy, &yz, &zz, &nx, &ny, &nz})
       column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);

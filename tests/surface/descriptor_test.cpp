@@ -138,6 +138,14 @@ TEST(DescribeShot, EveryFormAgreesWithTheReference) {
   }
 }
 
+TEST(DescribeShot, NormalsAndKeypointsMustBelongToTheVertices) {
+  const Points vertices = testing::icosphere(2).vertices;
+  EXPECT_NO_THROW(describe_shot(vertices, vertices, {0, 161}, 0.1));
+  EXPECT_THROW(describe_shot(vertices, vertices.topRows(161), {0}, 0.1), InvalidInput);
+  EXPECT_THROW(describe_shot(vertices, vertices, {0, 162}, 0.1), InvalidInput);
+  EXPECT_THROW(describe_shot(vertices, vertices, {-1}, 0.1), InvalidInput);
+}
+
 TEST(DescribeShot, OptionsAreChecked) {
   const Mesh mesh = testing::icosphere(1);
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
