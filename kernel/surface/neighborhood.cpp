@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace corral {
@@ -31,36 +32,64 @@ std::vector<std::size_t> first_integers(std::size_t count) {
   return values;
 }
 
+/// Rows by place: those in one place are next to each other, ascending.
+Indices sorted_by_place(const Points& points) {
+  Indices rows(static_cast<std::size_t>(points.rows()));
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2), row); };
+  std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });
+  return rows;
+}
+
+bool is_nearer(const Neighbor& a, const Neighbor& b) {
+  return a.squared_distance < b.squared_distance || (a.squared_distance == b.squared_distance && a.index < b.index);
+}
+
 }  // namespace
 
+/// Holds every place once: CGAL's tree would be as deep as the largest number of points in one place, and recurse as deep.
 struct PointIndex::Tree {
-  std::vector<Point> points;
+  Indices rows;
+  std::vector<std::size_t> begins;  // of the rows in each place
+  std::vector<Point> places;
   PointMap map;
   Search::Distance distance;
   Search::Tree tree;
 
-  static std::vector<Point> copy(const Points& points) {
-    std::vector<Point> copied;
-    copied.reserve(static_cast<std::size_t>(points.rows()));
-    for (Eigen::Index row = 0; row < points.rows(); ++row) copied.push_back(to_cgal(points.row(row).transpose()));
-    return copied;
-  }
-
   explicit Tree(const Points& input)
-      : points(copy(input)),
-        map(CGAL::make_property_map(std::as_const(points).data())),
+      : rows(sorted_by_place(input)),
+        places(collect(input)),
+        map(CGAL::make_property_map(std::as_const(places).data())),
         distance(map),
         tree(Search::Tree::Splitter(), Traits(map)) {
-    if (points.empty()) return;  // a tree over nothing cannot be built, and is never asked
-    const auto indices = first_integers(points.size());
+    if (places.empty()) return;  // a tree over nothing cannot be built, and is never asked
+    const auto indices = first_integers(places.size());
     tree.insert(indices.begin(), indices.end());
     tree.build();
   }
 
-  Neighbor measure(const Eigen::Vector3d& query, std::size_t index) const {
-    const Point& point = points[index];
+  std::vector<Point> collect(const Points& input) {
+    std::vector<Point> distinct;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Point point = to_cgal(input.row(rows[i]).transpose());
+      if (!distinct.empty() && point == distinct.back()) continue;
+      distinct.push_back(point);
+      begins.push_back(i);
+    }
+    begins.push_back(rows.size());
+    return distinct;
+  }
+
+  double squared_distance(const Eigen::Vector3d& query, std::size_t place) const {
+    const Point& point = places[place];
     const double x = point.x() - query.x(), y = point.y() - query.y(), z = point.z() - query.z();
-    return {static_cast<int>(index), x * x + y * y + z * z};
+    return x * x + y * y + z * z;
+  }
+
+  /// Adds the points in a place, at most so many.
+  void add(std::size_t place, double squared, std::size_t most, std::vector<Neighbor>& neighbors) const {
+    const std::size_t end = std::min(begins[place + 1], begins[place] + most);
+    for (std::size_t i = begins[place]; i < end; ++i) neighbors.push_back({rows[i], squared});
   }
 };
 
@@ -69,15 +98,15 @@ PointIndex::~PointIndex() = default;
 
 std::vector<Neighbor> PointIndex::within(const Eigen::Vector3d& center, double radius) const {
   std::vector<Neighbor> neighbors;
-  if (!(radius >= 0) || !std::isfinite(radius) || tree_->points.empty()) return neighbors;
+  if (!(radius >= 0) || !std::isfinite(radius) || tree_->places.empty()) return neighbors;
   // The tree decides with its own arithmetic: ask for a little more and decide here.
   const double generous = radius * (1 + 1e-9) + std::numeric_limits<double>::min();
   std::vector<std::size_t> found;
   tree_->tree.search(std::back_inserter(found), Sphere(to_cgal(center), generous, 0.0, Traits(tree_->map)));
   neighbors.reserve(found.size());
-  for (const std::size_t index : found) {
-    const Neighbor neighbor = tree_->measure(center, index);
-    if (neighbor.squared_distance <= radius * radius) neighbors.push_back(neighbor);
+  for (const std::size_t place : found) {
+    const double squared = tree_->squared_distance(center, place);
+    if (squared <= radius * radius) tree_->add(place, squared, tree_->rows.size(), neighbors);
   }
   std::sort(neighbors.begin(), neighbors.end(), [](const Neighbor& a, const Neighbor& b) { return a.index < b.index; });
   return neighbors;
@@ -85,21 +114,23 @@ std::vector<Neighbor> PointIndex::within(const Eigen::Vector3d& center, double r
 
 std::vector<Neighbor> PointIndex::nearest(const Eigen::Vector3d& query, int count) const {
   std::vector<Neighbor> neighbors;
-  const auto wanted = std::min(static_cast<std::size_t>(std::max(count, 0)), tree_->points.size());
+  const auto wanted = std::min(static_cast<std::size_t>(std::max(count, 0)), tree_->rows.size());
   if (wanted == 0) return neighbors;
-  // One more than asked: if it is as far as the last, others may be too, and the lowest indices must win.
-  const auto asked = static_cast<unsigned>(std::min(wanted + 1, tree_->points.size()));
-  const Search search(tree_->tree, to_cgal(query), asked, 0.0, true, tree_->distance);
-  for (const auto& [index, squared] : search) neighbors.push_back(tree_->measure(query, index));
-  const auto nearer = [](const Neighbor& a, const Neighbor& b) {
-    return a.squared_distance < b.squared_distance || (a.squared_distance == b.squared_distance && a.index < b.index);
-  };
-  std::sort(neighbors.begin(), neighbors.end(), nearer);
-  if (neighbors.size() > wanted && !(neighbors[wanted - 1].squared_distance < neighbors[wanted].squared_distance)) {
-    neighbors = within(query, std::sqrt(neighbors[wanted].squared_distance) * (1 + 1e-15));
-    std::sort(neighbors.begin(), neighbors.end(), nearer);
+  // One place more than asked: if it is as far as the last, others may be too, and the lowest indices must win.
+  const auto asked = std::min(wanted + 1, tree_->places.size());
+  const Search search(tree_->tree, to_cgal(query), static_cast<unsigned>(asked), 0.0, true, tree_->distance);
+  double farthest = 0;
+  for (const auto& [place, by_tree] : search) {
+    const double squared = tree_->squared_distance(query, place);
+    farthest = std::max(farthest, squared);
+    tree_->add(place, squared, wanted, neighbors);
   }
-  if (neighbors.size() > wanted) neighbors.resize(wanted);
+  std::sort(neighbors.begin(), neighbors.end(), is_nearer);
+  if (asked < tree_->places.size() && !(neighbors[wanted - 1].squared_distance < farthest)) {
+    neighbors = within(query, std::sqrt(farthest) * (1 + 1e-15));
+    std::sort(neighbors.begin(), neighbors.end(), is_nearer);
+  }
+  neighbors.resize(wanted);
   return neighbors;
 }
 

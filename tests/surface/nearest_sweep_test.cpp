@@ -89,10 +89,13 @@ TEST(NearestSweep, SmallerCrowdsAreSearchedAllWithAll) {
 }
 
 TEST(NearestSweep, ThousandsInOnePlaceCountOnce) {
-  for (const int copies : {4300, 9000}) {
+  for (const int copies : {4300, 9000, 100000}) {
     const Points others = testing::uniform_points(700, 4);
     const Points points = testing::stacked({others, others.row(5).replicate(copies, 1)});
     EXPECT_DOUBLE_EQ(point_resolution(points), point_resolution(others)) << copies;
+    const Points normals = estimate_normals({points, Triangles(0, 3)});
+    EXPECT_TRUE(normals.row(5).isZero(0)) << "its nearest are its copies";
+    for (int row = 0; row < 700; row += 50) expect_fits(points, row, 20, normals.row(row));
   }
 }
 

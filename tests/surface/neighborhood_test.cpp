@@ -116,6 +116,17 @@ TEST(PointIndex, TwoThousandPointsInOnePlace) {
   expect_agrees(points, {0, 0.3, 1}, 11);
 }
 
+TEST(PointIndex, AHundredThousandPointsInOnePlaceAreAsOne) {
+  // As scans have them that put what they missed at the origin.
+  Points points = testing::stacked({uniform_points(300, 16), Points::Zero(100000, 3), uniform_points(300, 17)});
+  const PointIndex index(points);
+  EXPECT_EQ(index.within({0, 0, 0}, 0).size(), 100000u);
+  EXPECT_EQ(index.within({0, 0, 0}, 9).size(), 100600u);
+  EXPECT_THAT(rows_of(index.nearest({0, 0, 0}, 3)), ElementsAre(300, 301, 302));
+  EXPECT_THAT(rows_of(index.nearest(points.row(5).transpose(), 1)), ElementsAre(5));
+  expect_same(index.nearest({0, 0, 0}, 100050), testing::reference_nearest(points, {0, 0, 0}, 100050));
+}
+
 TEST(PointIndex, DuplicatesAmongOthersComeInOrder) {
   Points points = uniform_points(900, 12);
   for (int row = 300; row < 900; ++row) points.row(row) = points.row(row % 300);
