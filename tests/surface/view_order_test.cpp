@@ -67,7 +67,8 @@ TEST(TriangulateView, AFarSensorSeesWhatADirectionDoes) {
   const Triangles parallel = triangulate_view(points, 0.5, seen_along(-3 * side)).triangles;
   EXPECT_GT(far.rows(), 300);
   EXPECT_EQ(far, parallel);
-  EXPECT_NE(far, triangulate_view(points, 0.5, seen_from(mean + 10 * side)).triangles);
+  const Triangles near = triangulate_view(points, 0.5, seen_from(mean + 10 * side)).triangles;
+  EXPECT_FALSE(near.rows() == far.rows() && near == far);
 }
 
 TEST(TriangulateView, DependsNeitherOnTheUnitNorOnThePlace) {
