@@ -21,6 +21,9 @@ namespace {
 /// Resolutions that differ by more have no meaningful mean: metres and millimetres, most likely.
 constexpr double kLargestRatio = 20;
 
+/// More than any machine needs; a typing error must not bring it down.
+constexpr int kMostThreads = 256;
+
 /// A positive length, if the rule is one.
 std::optional<double> as_length(const std::string& rule) {
   const auto value = parse_double(rule);
@@ -156,7 +159,8 @@ void MatchSettings::validate() const {
   require_positive("match", "--support-radius-pr", support_radius_pr);
   if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
     throw InvalidInput("match", "--sensor", "not a place", "three finite coordinates x,y,z");
-  if (threads < 0) throw InvalidInput("match", "--threads", std::to_string(threads), "at least 0");
+  if (threads < 0 || threads > kMostThreads)
+    throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
   harris_mesh.validate();
   matching.validate();
 }

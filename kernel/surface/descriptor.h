@@ -51,8 +51,8 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 /// centre of the own bin, up to a half; beyond the last centre of an axis that ends the share is lost.
 ///   additive  the four shares are added one axis at a time, and the own bin gets the rest of each
 ///   product   the shares multiply, over up to 16 bins
-///   pcl       additive, with the slip of that library: what bin 9 of the cosine gives to bin 10 goes to bin 0; and a vertex
-///             at exactly R is outside
+///   pcl       additive, with the slip of that library: what bin 9 of the cosine gives to bin 10 goes to bin 0 (and
+///             describe_shot() leaves vertices at exactly R out of the support)
 /// Order     bin = ((azimuth * 2 + shell) * 2 + above) * 11 + cosine; azimuth sectors from -180 degrees counter-clockwise,
 ///           shell 1 beyond R / 2, above 1 for z > 0. A sector holds its upper border. On the z axis, where there is no
 ///           azimuth, the vote is in sector 0: that of the other three axes, or all of it (product).

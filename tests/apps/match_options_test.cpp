@@ -148,6 +148,7 @@ TEST(MatchOptions, BadValuesAreRefusedInOneSentence) {
       {"--shot quadrilinear", "expected additive|pcl|product"},
       {"--matcher kdtree", "expected exact|flann"},
       {"--threads -1", "--threads"},
+      {"--threads 257", "--threads"},
       {"--threads 1.5", "--threads"},
       {"--threads many", "--threads"},
       {"--mutual=perhaps", "mutual"},
