@@ -96,7 +96,8 @@ Eigen::VectorXd response_along(const Mesh& mesh, const std::vector<Indices>& rin
       throw InvalidInput(
           kWho, "neighborhood",
           options.neighborhood + " of over " + std::to_string(kLargestMeanNeighborhood) + " vertices on average",
-          "a smaller one: about 30 are usual (is the resolution in the unit of this mesh?)");
+          "a smaller one: about 30 are usual (is the resolution in the unit of this mesh, and does no far outlier "
+          "widen its bounding box?)");
     response(vertex) = response_of(places, options.k);
   }
   return response;
