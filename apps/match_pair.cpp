@@ -165,6 +165,8 @@ void MatchSettings::validate() const {
   matching.validate();
 }
 
+int match_stages(const MatchSettings& settings) { return settings.inspect ? 11 : 9; }
+
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
                        const StageObserver& observer) {
   settings.validate();

@@ -65,7 +65,7 @@ struct MatchedPair {
 
 /// Called with what begins; may be empty.
 using StageObserver = std::function<void(const std::string& stage)>;
-constexpr int kMatchStages = 9;  // two more with `inspect`
+int match_stages(const MatchSettings& settings);  ///< how many stages begin
 
 /// resolution -> keypoints -> normals, frames and descriptors of both surfaces -> matches. Throws InvalidInput.
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,

@@ -26,7 +26,7 @@ int match(Settings settings) {
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   MatchedPair pair;
   {
-    Progress progress(kMatchStages);
+    Progress progress(match_stages(settings.match));
     pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   }
   if (settings.verbose)

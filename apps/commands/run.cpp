@@ -114,7 +114,7 @@ PairRun evaluate(const Settings& settings) {
     make_folder(settings.output);
     check_writable(settings.output + "/run.json");
   }
-  Progress progress(kMatchStages + 1 + static_cast<double>(run.methods.size()));
+  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()));
   run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   if (run.truth) {
     progress.begin("overlap");

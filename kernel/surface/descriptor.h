@@ -57,6 +57,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 ///           shell 1 beyond R / 2, above 1 for z > 0. A sector holds its upper border. On the z axis, where there is no
 ///           azimuth, the vote is in sector 0: that of the other three axes, or all of it (product).
 /// Source    [tombari2010shot]; additive shares, L2 norm and order as in the library that [yang2017evaluation] ran.
+/// Departs   From that library: the cosine ends with its last bin (`pcl` wraps), and double decides what float does there.
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               const std::string& form = "additive");
 

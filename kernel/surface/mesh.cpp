@@ -2,6 +2,9 @@
 #include "kernel/surface/mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+#include <tuple>
 
 #include "kernel/error.h"
 
@@ -16,6 +19,14 @@ void Mesh::validate(const std::string& who) const {
       if (triangles(face, corner) < 0 || triangles(face, corner) >= vertices.rows())
         throw InvalidInput(who, "face " + std::to_string(face), "of vertex " + std::to_string(triangles(face, corner)),
                            "vertices 0 .. " + std::to_string(vertices.rows() - 1));
+}
+
+Indices rows_by_place(const Points& points) {
+  Indices rows(static_cast<std::size_t>(points.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2), row); };
+  std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });
+  return rows;
 }
 
 Eigen::Vector3d vertex_centroid(const Mesh& mesh) {

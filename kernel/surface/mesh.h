@@ -20,6 +20,10 @@ struct Mesh {
   void validate(const std::string& who) const;
 };
 
+/// Rows in ascending order of x, then y, then z, then row: an order that the numbering of the points decides only among
+/// those in one place.
+Indices rows_by_place(const Points& points);
+
 /// Mean of all vertices; zero for none.
 Eigen::Vector3d vertex_centroid(const Mesh& mesh);
 

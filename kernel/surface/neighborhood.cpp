@@ -11,8 +11,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
+
+#include "kernel/surface/mesh.h"
 
 namespace corral {
 namespace {
@@ -32,15 +33,6 @@ std::vector<std::size_t> first_integers(std::size_t count) {
   return values;
 }
 
-/// Rows by place: those in one place are next to each other, ascending.
-Indices sorted_by_place(const Points& points) {
-  Indices rows(static_cast<std::size_t>(points.rows()));
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
-  const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2), row); };
-  std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });
-  return rows;
-}
-
 bool is_nearer(const Neighbor& a, const Neighbor& b) {
   return a.squared_distance < b.squared_distance || (a.squared_distance == b.squared_distance && a.index < b.index);
 }
@@ -57,7 +49,7 @@ struct PointIndex::Tree {
   Search::Tree tree;
 
   explicit Tree(const Points& input)
-      : rows(sorted_by_place(input)),
+      : rows(rows_by_place(input)),
         places(collect(input)),
         map(CGAL::make_property_map(std::as_const(places).data())),
         distance(map),

@@ -2,8 +2,6 @@
 #include "kernel/surface/surroundings.h"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
 
 namespace corral {
 namespace {
@@ -15,13 +13,7 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 Surroundings::Surroundings(const Mesh& mesh, const std::vector<Indices>& rings, const Reach& reach)
     : rings_(rings), reach_(reach), rank_(rings.size()), depth_(rings.size(), -1), path_(rings.size(), 0.0) {
   if (reach.ball_radius > 0) index_ = std::make_unique<PointIndex>(mesh.vertices);
-  Indices order(rings.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int v) {
-    return std::make_tuple(mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2));
-  };
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
-  for (const int vertex : order) {
+  for (const int vertex : rows_by_place(mesh.vertices)) {
     rank_[at(vertex)] = static_cast<int>(sorted_.size());
     sorted_.emplace_back(mesh.vertices.row(vertex).transpose());
   }

@@ -9,7 +9,6 @@
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -151,13 +150,10 @@ int count_boundary_loops(const HalfEdgeMesh& half) {
 }  // namespace
 
 Points distinct_points(const Points& points) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(points.rows()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const auto key = [&](Eigen::Index row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2)); };
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return key(a) < key(b); });
-  order.erase(std::unique(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return key(a) == key(b); }),
-              order.end());
-  return points(order, Eigen::all);
+  Indices rows = rows_by_place(points);
+  const auto in_one_place = [&](int a, int b) { return (points.row(a).array() == points.row(b).array()).all(); };
+  rows.erase(std::unique(rows.begin(), rows.end(), in_one_place), rows.end());
+  return points(rows, Eigen::all);
 }
 
 std::vector<Indices> vertex_rings(const Mesh& mesh) {

@@ -159,7 +159,12 @@ TEST(MatchPair, AnnouncesItsStages) {
       match_pair(testing::icosphere(2), testing::icosphere(2), {}, [&](const std::string& stage) {
         stages.push_back(stage);
       }).report;
-  EXPECT_EQ(stages.size(), static_cast<std::size_t>(kMatchStages));
+  EXPECT_EQ(stages.size(), static_cast<std::size_t>(match_stages({})));
+  MatchSettings inspecting;
+  inspecting.inspect = true;
+  int announced = 0;
+  match_pair(testing::icosphere(2), testing::icosphere(2), inspecting, [&](const std::string&) { ++announced; });
+  EXPECT_EQ(announced, match_stages(inspecting));
   EXPECT_EQ(stages.front(), "resolution of the source");
   EXPECT_EQ(stages.back(), "matching");
   ASSERT_EQ(report.stages.size(), stages.size());

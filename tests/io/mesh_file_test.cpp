@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/io/scratch.h"
+#include "tests/io/square_mesh.h"
 #include "tests/support/meshes.h"
 
 namespace corral {
@@ -15,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using testing::complaint;
+using testing::expect_square;
 using ::testing::HasSubstr;
 using testing::io_error_of;
 using testing::put_text;
@@ -33,15 +35,6 @@ std::string refusal(Parser parser, const std::string& content) {
 }
 std::string off_refusal(const std::string& content) { return refusal(parse_off, content); }
 std::string obj_refusal(const std::string& content) { return refusal(parse_obj, content); }
-
-void expect_square(const Mesh& mesh) {
-  Points vertices(4, 3);
-  vertices << 0, 0, 0.5, 1, 0, 0.5, 1, 1, 0.5, 0, 1, 0.5;
-  Triangles triangles(2, 3);
-  triangles << 0, 1, 2, 0, 2, 3;
-  EXPECT_EQ(mesh.vertices, vertices);
-  EXPECT_EQ(mesh.triangles, triangles);
-}
 
 TEST(MeshFile, ReadsBackWhatItWrote) {
   const ScratchFolder folder;

@@ -12,6 +12,7 @@
 #include "kernel/surface/topology.h"
 #include "tests/io/ply_encoder.h"
 #include "tests/io/scratch.h"
+#include "tests/io/square_mesh.h"
 #include "tests/support/meshes.h"
 
 namespace corral {
@@ -21,6 +22,7 @@ using ::testing::AllOf;
 using testing::complaint;
 using testing::encode;
 using ::testing::EndsWith;
+using testing::expect_square;
 using ::testing::HasSubstr;
 using testing::replaced;
 using ::testing::StartsWith;
@@ -58,15 +60,6 @@ std::string text_stl(const std::vector<Facet>& facets) {
     content += "    endloop\n  endfacet\n";
   }
   return content + "endsolid two words\n";
-}
-
-void expect_square(const Mesh& mesh) {
-  Points vertices(4, 3);
-  vertices << 0, 0, 0.5, 1, 0, 0.5, 1, 1, 0.5, 0, 1, 0.5;
-  Triangles triangles(2, 3);
-  triangles << 0, 1, 2, 0, 2, 3;
-  EXPECT_EQ(mesh.vertices, vertices);
-  EXPECT_EQ(mesh.triangles, triangles);
 }
 
 std::vector<Facet> facets_of(const Mesh& mesh) {
