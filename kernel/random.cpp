@@ -20,9 +20,11 @@ std::uint64_t mix(std::uint64_t word) {
 RandomStream::RandomStream(std::uint64_t seed) : engine_(mix(seed)) {}
 
 std::uint64_t RandomStream::below(std::uint64_t count) {
-  const std::uint64_t rejected = (0 - count) % count;  // 2^64 mod count: the part that would favour small values
   std::uint64_t word = engine_();
-  while (word < rejected) word = engine_();
+  if (word < count) {  // only there may a word be one of the first 2^64 mod count, which would favour small values
+    const std::uint64_t rejected = (0 - count) % count;
+    while (word < rejected) word = engine_();
+  }
   return word % count;
 }
 

@@ -207,10 +207,10 @@ template <class Body>
 
 }  // namespace lanes
 
-/// Number of lanes: columns that hot loops read are padded to a multiple of it.
-constexpr int kLanes = 8;
+/// Numbers of lanes: columns that hot loops read are padded to a multiple of them.
+constexpr int kLanes = 8, kFloatLanes = 16;
 
-constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
+constexpr int padded(int count, int lanes = kLanes) { return (count + lanes - 1) / lanes * lanes; }
 
 /// Starts every column at a cache line, so that no lane load straddles two.
 template <class T>
@@ -225,6 +225,7 @@ struct CacheLineAllocator {
   friend bool operator!=(CacheLineAllocator, CacheLineAllocator) { return false; }
 };
 using AlignedColumn = std::vector<double, CacheLineAllocator<double>>;
+using FloatColumn = std::vector<float, CacheLineAllocator<float>>;
 
 /// Runs a body compiled for the vector level of this machine; it does its arithmetic in the lanes that it is given:
 ///

@@ -10,7 +10,6 @@ namespace corral {
 
 constexpr int kPanelColumns = 64;  ///< columns that are multiplied together, stored step by step
 constexpr int kRowTile = 6;        ///< numbers of rows are multiples of this
-constexpr int kFloatLanes = 16;
 
 /// Rows that are multiplied, each contiguous.
 struct FloatRows {
