@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "kernel/correspondence_set.h"
@@ -22,9 +23,12 @@ inline double rigidity_ratio(double source_distance, double target_distance) {
 struct PairDistances {
   double source, target;
 };
+inline double point_distance(const Points& points, int i, int j) {
+  const double x = points(i, 0) - points(j, 0), y = points(i, 1) - points(j, 1), z = points(i, 2) - points(j, 2);
+  return std::sqrt(x * x + y * y + z * z);
+}
 inline PairDistances pair_distances(const CorrespondenceSet& matches, int i, int j) {
-  return {(matches.source_points.row(i) - matches.source_points.row(j)).norm(),
-          (matches.target_points.row(i) - matches.target_points.row(j)).norm()};
+  return {point_distance(matches.source_points, i, j), point_distance(matches.target_points, i, j)};
 }
 
 /// Distinctiveness of each match, 1 - d1/d2: 0 where the second nearest feature is absent or coincides (d2 <= 0).

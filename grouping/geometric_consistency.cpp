@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "grouping/compatibility.h"
+#include "grouping/filter_loops.h"
 
 namespace corral {
 namespace {
@@ -14,48 +15,44 @@ constexpr std::size_t kSmallestClique = 4;
 
 class ConsistencyTest {
  public:
-  ConsistencyTest(const CorrespondenceSet& matches, double tolerance)
-      : matches_(matches), tolerance_(tolerance), difference_(matches.size()) {}
+  ConsistencyTest(const CorrespondenceSet& matches, double tolerance) : matches_(matches), tolerance_(tolerance) {}
 
   bool operator()(int i, int j) const {
     const PairDistances distances = pair_distances(matches_, i, j);
     return std::abs(distances.source - distances.target) < tolerance_;
   }
 
-  /// d(seed, j) for all j at once.
-  const Eigen::ArrayXd& differences(int seed) {
-    const auto p = matches_.source_points.array();
-    const auto q = matches_.target_points.array();
-    difference_ =
-        (((p.col(0) - p(seed, 0)).square() + (p.col(1) - p(seed, 1)).square() + (p.col(2) - p(seed, 2)).square())
-             .sqrt() -
-         ((q.col(0) - q(seed, 0)).square() + (q.col(1) - q(seed, 1)).square() + (q.col(2) - q(seed, 2)).square())
-             .sqrt())
-            .abs();
-    return difference_;
+  Indices star(int seed) const {
+    Indices rows;
+    for (int row = 0; row < matches_.size(); ++row)
+      if ((*this)(seed, row)) rows.push_back(row);  // the seed agrees with itself: d = 0
+    return rows;
   }
-
-  int count(int seed) { return static_cast<int>((differences(seed) < tolerance_).count()); }
 
  private:
   const CorrespondenceSet& matches_;
   const double tolerance_;
-  Eigen::ArrayXd difference_;
 };
 
+/// Floats count, for every seed, the matches that possibly agree with it. The largest count is replaced by the exact one
+/// until the largest is exact: then no other can be larger, nor as large in an earlier row.
 Indices largest_star(const CorrespondenceSet& matches, double tolerance) {
-  ConsistencyTest consistent(matches, tolerance);
-  int best_seed = -1, best_count = 0;
-  for (int seed = 0; seed < matches.size(); ++seed) {
-    const int count = consistent.count(seed);  // the seed agrees with itself: d = 0
-    if (count > best_count) best_count = count, best_seed = seed;
+  const FilterTable table(matches);
+  const ConsistencyTest consistent(matches, tolerance);
+  FloatColumn counts(static_cast<std::size_t>(table.padded_rows()));
+  count_consistent(table, {table, tolerance}, counts.data());
+  const auto end = counts.begin() + matches.size();
+  std::vector<char> is_exact(counts.size(), 0);
+  Indices star;
+  while (matches.size() > 0) {
+    const auto largest = std::max_element(counts.begin(), end);  // the first of them
+    const auto seed = static_cast<std::size_t>(largest - counts.begin());
+    star = consistent.star(static_cast<int>(seed));
+    if (is_exact[seed] || star.size() == static_cast<std::size_t>(*largest)) break;
+    *largest = static_cast<float>(star.size());
+    is_exact[seed] = 1;
   }
-  Indices selected;
-  if (best_seed < 0) return selected;
-  const Eigen::ArrayXd& differences = consistent.differences(best_seed);
-  for (int row = 0; row < matches.size(); ++row)
-    if (differences(row) < tolerance) selected.push_back(row);
-  return selected;
+  return star;
 }
 
 Indices largest_clique(const CorrespondenceSet& matches, double tolerance) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <tuple>
 
@@ -21,16 +23,55 @@ using Cell = Eigen::Vector3d;
 
 bool before(const Cell& a, const Cell& b) { return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z()); }
 
-/// The share of one vote in one cell.
-struct Share {
-  Cell cell;
-  int row;
-  double weight;
+/// Sums of weights by cell: a hash table whose memory depends on the number of cells used, not on their extent.
+class Accumulator {
+ public:
+  explicit Accumulator(std::size_t most_cells) {
+    while ((std::size_t{1} << bits_) < 2 * most_cells) ++bits_;
+    slots_.resize(std::size_t{1} << bits_, {Cell::Zero(), 0});
+  }
+
+  void add(const Cell& cell, double weight) {
+    std::size_t at = hash(cell);
+    while (slots_[at].weight > 0 && slots_[at].cell != cell) at = (at + 1) & (slots_.size() - 1);
+    slots_[at].cell = cell;
+    slots_[at].weight += weight;
+  }
+
+  /// The cell with the largest sum; the first in order among equals.
+  Cell fullest() const {
+    Slot best{Cell::Zero(), 0};
+    for (const Slot& slot : slots_)
+      if (slot.weight > best.weight || (slot.weight == best.weight && slot.weight > 0 && before(slot.cell, best.cell)))
+        best = slot;
+    return best.cell;
+  }
+
+ private:
+  struct Slot {
+    Cell cell;
+    double weight;  ///< 0: free
+  };
+
+  std::size_t hash(const Cell& cell) const {
+    std::uint64_t word = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &cell(axis), sizeof(bits));
+      word = (word ^ bits) * 0x9e3779b97f4a7c15u;
+      word ^= word >> 32;
+    }
+    return static_cast<std::size_t>(word * 0x9e3779b97f4a7c15u >> (64 - bits_));
+  }
+
+  int bits_ = 1;
+  std::vector<Slot> slots_;
 };
 
 std::vector<Vote> cast_votes(const CorrespondenceSet& matches) {
   const Eigen::Vector3d centroid = matches.source_centroid_or_mean();
   std::vector<Vote> votes;
+  votes.reserve(static_cast<std::size_t>(matches.size()));
   for (int row = 0; row < matches.size(); ++row) {
     const LocalReferenceFrame& source = matches.source_frames[static_cast<std::size_t>(row)];
     const LocalReferenceFrame& target = matches.target_frames[static_cast<std::size_t>(row)];
@@ -39,34 +80,6 @@ std::vector<Vote> cast_votes(const CorrespondenceSet& matches) {
     votes.push_back({row, target.transpose() * local + matches.target_points.row(row).transpose()});  // g_i
   }
   return votes;
-}
-
-/// The cell with the largest sum of weights; the first in order among equals. `shares` must not be empty; sorts it.
-Cell fullest_cell(std::vector<Share>& shares) {
-  std::sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) {
-    return before(a.cell, b.cell) || (!before(b.cell, a.cell) && a.row < b.row);
-  });
-  Cell best = shares.front().cell;
-  double best_weight = -1;
-  for (auto first = shares.begin(); first != shares.end();) {
-    double weight = 0;
-    auto last = first;
-    for (; last != shares.end() && last->cell == first->cell; ++last) weight += last->weight;
-    if (weight > best_weight) best = first->cell, best_weight = weight;
-    first = last;
-  }
-  return best;
-}
-
-/// Rows with a share in a cell that passes, ascending.
-template <class Passes>
-Indices rows_in(const std::vector<Share>& shares, Passes passes) {
-  Indices rows;
-  for (const Share& share : shares)
-    if (passes(share.cell)) rows.push_back(share.row);
-  std::sort(rows.begin(), rows.end());
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-  return rows;
 }
 
 struct Box {
@@ -88,37 +101,56 @@ double rounding_extent(const Box& box, double resolution) {
   return std::max(1e-6 * resolution, 64 * std::numeric_limits<double>::epsilon() * largest);
 }
 
+/// Each vote counts in one cell of the box; the fullest and its 6 face neighbours win.
 Indices select_in_box(const std::vector<Vote>& votes, int bins, double resolution) {
   const Box box = bounding_box(votes);
   const Eigen::Array3d low = box.low, extent = box.high - box.low, width = extent / bins;
   const double indivisible = rounding_extent(box, resolution);
-  std::vector<Share> shares;
+  Accumulator accumulator(votes.size());
+  std::vector<Cell> cells;
+  cells.reserve(votes.size());
   for (const Vote& vote : votes) {
     Cell cell = Cell::Zero();
     for (int axis = 0; axis < 3; ++axis)
       if (extent(axis) > indivisible)
         cell(axis) = std::min(std::floor((vote.position(axis) - low(axis)) / width(axis)), bins - 1.0);
-    shares.push_back({cell, vote.row, 1});
+    accumulator.add(cell, 1);
+    cells.push_back(cell);
   }
-  const Cell peak = fullest_cell(shares);
-  return rows_in(shares, [&](const Cell& cell) { return (cell - peak).lpNorm<1>() <= 1; });  // itself and 6 faces
+  const Cell peak = accumulator.fullest();
+  Indices rows;
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    if ((cells[i] - peak).lpNorm<1>() <= 1) rows.push_back(votes[i].row);
+  return rows;
 }
 
+/// The cell and the weight of each of the 8 cubes that share a vote.
+template <class Visit>
+void visit_shares(const Vote& vote, const Eigen::Array3d& low, double side, Visit visit) {
+  const Eigen::Array3d scaled = (vote.position.array() - low) / side - 0.5;  // whole numbers at the centres of cells
+  const Eigen::Array3d base = scaled.floor();
+  const Eigen::Array3d part = scaled - base;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Array3d step(corner & 1, (corner >> 1) & 1, corner >> 2);
+    const double weight = (step * part + (1 - step) * (1 - part)).prod();
+    if (weight > 0) visit((base + step + 0.0).matrix(), weight);  // + 0: no negative zero
+  }
+}
+
+/// Each vote is shared among 8 cubes; those with a share in the fullest win.
 Indices select_in_cubes(const std::vector<Vote>& votes, double side) {
   const Eigen::Array3d low = bounding_box(votes).low;
-  std::vector<Share> shares;
+  Accumulator accumulator(8 * votes.size());
+  for (const Vote& vote : votes)
+    visit_shares(vote, low, side, [&](const Cell& cell, double weight) { accumulator.add(cell, weight); });
+  const Cell peak = accumulator.fullest();
+  Indices rows;
   for (const Vote& vote : votes) {
-    const Eigen::Array3d scaled = (vote.position.array() - low) / side - 0.5;  // whole numbers at the centres of cells
-    const Eigen::Array3d base = scaled.floor();
-    const Eigen::Array3d part = scaled - base;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Array3d step(corner & 1, (corner >> 1) & 1, corner >> 2);
-      const double weight = (step * part + (1 - step) * (1 - part)).prod();
-      if (weight > 0) shares.push_back({(base + step).matrix(), vote.row, weight});
-    }
+    bool has_share = false;
+    visit_shares(vote, low, side, [&](const Cell& cell, double) { has_share = has_share || cell == peak; });
+    if (has_share) rows.push_back(vote.row);
   }
-  const Cell peak = fullest_cell(shares);
-  return rows_in(shares, [&](const Cell& cell) { return cell == peak; });
+  return rows;
 }
 
 }  // namespace

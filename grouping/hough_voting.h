@@ -36,7 +36,7 @@ struct HoughVotingOptions {
 /// Reads     source_points, target_points, source_frames, target_frames, resolution, source_centroid (default: the mean
 ///           of the source points).
 /// Returns   selected only.
-/// Cost      O(M log M) time, O(M) memory, whatever the extent of the votes. Deterministic.
+/// Cost      O(M) time and memory, whatever the extent of the votes. Deterministic.
 /// Throws    InvalidInput: option out of range, column absent, ragged or non-finite.
 /// Departs   15 bins per axis after the authors' program (the paper gives no size). Ties go to the lowest cell in the order
 ///           of x, then y, then z. An axis whose extent is rounding (at most 1e-6 pr, or 64 ulps of the largest coordinate)

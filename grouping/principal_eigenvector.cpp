@@ -11,89 +11,153 @@ namespace corral {
 namespace {
 
 constexpr double kTolerance = 1e-12;
-constexpr int kKrylovDimension = 24;
+constexpr Eigen::Index kKrylovDimension = 24;
 constexpr int kMaximumRestarts = 10000;  // a guard against rounding, not a part of the definition
 
 struct Eigenpair {
   double value = 0;
   Eigen::VectorXd vector;
+  bool is_final = false;
 };
 
-/// The largest Ritz pair of the Krylov space of `start`, grown until the pair satisfies the tolerance or the space is
-/// full.
-Eigenpair largest_ritz_pair(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& start) {
-  const Eigen::Index size = matrix.rows();
-  const Eigen::Index dimension = std::min<Eigen::Index>(size, kKrylovDimension);
-  Eigen::MatrixXd basis(size, dimension);
-  Eigen::VectorXd diagonal(dimension), off_diagonal(dimension);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
-  basis.col(0) = start.normalized();
-  for (Eigen::Index used = 1;; ++used) {
-    const auto span = basis.leftCols(used);
-    Eigen::VectorXd next = matrix.selfadjointView<Eigen::Lower>() * basis.col(used - 1);
-    diagonal(used - 1) = basis.col(used - 1).dot(next);
-    for (int pass = 0; pass < 2; ++pass) next -= span * (span.transpose() * next);
-    off_diagonal(used - 1) = next.norm();
-    small.computeFromTridiagonal(diagonal.head(used), off_diagonal.head(used - 1));
-    const double value = small.eigenvalues()(used - 1);
-    const Eigen::VectorXd weights = small.eigenvectors().col(used - 1);
-    const double residual = off_diagonal(used - 1) * std::abs(weights(used - 1));
-    if (used == dimension || !(residual > 0.1 * kTolerance * value)) return {value, span * weights};
-    basis.col(used) = next / off_diagonal(used - 1);
-  }
+/// How far the unit vector of a Ritz pair is from the principal eigenvector; infinite if nothing is known.
+///
+/// The largest eigenvalue is at least the Ritz value v, the square of each other at most (sum of squares) - v^2. With a gap
+/// g between the two, sin(angle) <= residual / g.
+double error_bound(double value, double residual, double sum_of_squares) {
+  const double gap = value - std::sqrt(std::max(sum_of_squares * (1 + 1e-12) - value * value, 0.0));
+  if (!(gap > 1e-3 * value)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(2.0) * (residual + 1e-13 * value) / gap;
 }
 
-Eigenpair perron_pair(const Eigen::MatrixXd& matrix) {
-  const Eigen::Index size = matrix.rows();
-  Eigenpair pair{0, Eigen::VectorXd::Ones(size)};  // everywhere positive: it cannot be orthogonal to the answer
-  double previous_residual = std::numeric_limits<double>::infinity();
-  for (int restart = 0; restart < kMaximumRestarts; ++restart) {
-    pair = largest_ritz_pair(matrix, pair.vector);
-    pair.vector = pair.vector.cwiseAbs().normalized();  // the answer has one sign; what differs is rounding
-    const double residual = (matrix.selfadjointView<Eigen::Lower>() * pair.vector - pair.value * pair.vector).norm();
-    if (residual <= kTolerance * pair.value) break;
-    if (residual <= 1e3 * kTolerance * pair.value && residual > 0.5 * previous_residual) break;
-    previous_residual = residual;
+class Solver {
+ public:
+  Solver(const ConnectedProblem& problem, const WillDo& will_do) : problem_(problem), will_do_(will_do) {}
+
+  Eigenpair solve() {
+    Eigenpair pair{0, problem_.start, false};
+    double previous_residual = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd product;
+    for (int restart = 0; restart < kMaximumRestarts && !pair.is_final; ++restart) {
+      pair = largest_ritz_pair(pair.vector);
+      if (pair.is_final) break;
+      multiply(pair.vector, product);
+      const double residual = (product - pair.value * pair.vector).norm();
+      if (residual <= kTolerance * pair.value) break;
+      if (residual <= 1e3 * kTolerance * pair.value && residual > 0.5 * previous_residual) break;
+      previous_residual = residual;
+    }
+    return pair;
   }
-  return pair;
+
+ private:
+  void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const {
+    problem_.matrix.multiply(from, to);
+    to = to.cwiseProduct(problem_.takes_part);
+  }
+
+  /// The largest Ritz pair of the Krylov space of `start`, grown until the pair will do, satisfies the tolerance or the
+  /// space is full. Its vector is made non-negative: the answer has one sign, and what differs is an error.
+  Eigenpair largest_ritz_pair(const Eigen::VectorXd& start) const {
+    const Eigen::Index size = start.size();
+    const Eigen::Index dimension = std::min(size, kKrylovDimension);
+    Eigen::MatrixXd basis(size, dimension);
+    Eigen::VectorXd diagonal(dimension), off_diagonal(dimension), next, projection;
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+    basis.col(0) = start.normalized();
+    for (Eigen::Index used = 1;; ++used) {
+      const auto span = basis.leftCols(used);
+      multiply(basis.col(used - 1), next);
+      diagonal(used - 1) = basis.col(used - 1).dot(next);
+      for (int pass = 0; pass < 2; ++pass) {
+        projection.noalias() = span.transpose() * next;
+        next.noalias() -= span * projection;
+      }
+      off_diagonal(used - 1) = next.norm();
+      small.computeFromTridiagonal(diagonal.head(used), off_diagonal.head(used - 1));
+      const double value = small.eigenvalues()(used - 1);
+      const Eigen::VectorXd weights = small.eigenvectors().col(used - 1);
+      const double residual = off_diagonal(used - 1) * std::abs(weights(used - 1));
+      const bool ends = used == dimension || !(residual > 0.1 * kTolerance * value);
+      const double error = error_bound(value, residual, problem_.sum_of_squares);
+      if (ends || error < kWorthAsking) {
+        Eigenpair pair{value, (span * weights).cwiseAbs().normalized(), false};
+        pair.is_final = error < kWorthAsking && will_do_(pair.vector, error);
+        if (ends || pair.is_final) return pair;
+      }
+      basis.col(used) = next / off_diagonal(used - 1);
+    }
+  }
+
+  static constexpr double kWorthAsking = 1e-3;
+
+  const ConnectedProblem& problem_;
+  const WillDo& will_do_;
+};
+
+bool converged_only(const Eigen::VectorXd&, double) { return false; }
+
+double sum_of_squares(const GraphMatrix& matrix) {
+  double sum = 0;
+  Eigen::VectorXd column;
+  for (int node = 0; node < matrix.size(); ++node) matrix.get_column(node, column), sum += column.squaredNorm();
+  return sum;
 }
 
-/// The connected parts of the graph of non-zero entries, each ascending, in the order of their lowest index.
-std::vector<std::vector<Eigen::Index>> connected_parts(const Eigen::MatrixXd& matrix) {
-  std::vector<std::vector<Eigen::Index>> parts;
-  std::vector<char> seen(static_cast<std::size_t>(matrix.rows()), 0);
-  for (Eigen::Index first = 0; first < matrix.rows(); ++first) {
-    if (seen[static_cast<std::size_t>(first)]) continue;
-    seen[static_cast<std::size_t>(first)] = 1;
-    std::vector<Eigen::Index> part{first};
-    for (std::size_t next = 0; next < part.size(); ++next)
-      for (Eigen::Index other = 0; other < matrix.rows(); ++other)
-        if (matrix(other, part[next]) > 0 && !seen[static_cast<std::size_t>(other)])
-          seen[static_cast<std::size_t>(other)] = 1, part.push_back(other);
+/// The largest row sum, which no eigenvalue exceeds.
+double largest_row_sum(const GraphMatrix& matrix) {
+  Eigen::VectorXd sums;
+  matrix.multiply(Eigen::VectorXd::Ones(matrix.size()), sums);
+  return sums.maxCoeff();
+}
+
+}  // namespace
+
+std::vector<Indices> connected_parts(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part) {
+  std::vector<Indices> parts;
+  Eigen::VectorXd unseen = takes_part, column;
+  auto left = static_cast<int>(takes_part.sum());
+  const auto see = [&](int node, Indices& part) { unseen(node) = 0, part.push_back(node), --left; };
+  const int size = matrix.size();
+  for (int first = 0; left > 0; ++first) {
+    if (!(unseen(first) > 0)) continue;
+    Indices part;
+    see(first, part);
+    for (std::size_t next = 0; next < part.size() && left > 0; ++next) {
+      matrix.get_column(part[next], column);
+      for (int other = 0; other < size; ++other)
+        if (column(other) * unseen(other) > 0) see(other, part);
+    }
     std::sort(part.begin(), part.end());
     parts.push_back(part);
   }
   return parts;
 }
 
-}  // namespace
+Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const WillDo& will_do) {
+  return Solver(problem, will_do).solve().vector;
+}
 
-Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix) {
-  Eigen::VectorXd answer = Eigen::VectorXd::Zero(matrix.rows());
+Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix) {
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(matrix.size());
+  Eigen::VectorXd answer = Eigen::VectorXd::Zero(matrix.size());
   double best = 0;
-  const auto parts = connected_parts(matrix);
-  if (parts.size() == 1 && matrix.rows() > 1) return perron_pair(matrix).vector;
-  for (const auto& part : parts) {
-    const Eigen::MatrixXd block = matrix(part, part);
-    // An eigenvalue is at most the largest row sum: most parts need no solving.
-    if (block.rowwise().sum().maxCoeff() <= best * (1 + 1e-9)) continue;
-    const Eigenpair pair = perron_pair(block);
+  for (const Indices& part : connected_parts(matrix, all)) {
+    const auto block = matrix.restricted(part);
+    if (largest_row_sum(*block) <= best * (1 + 1e-9)) continue;  // most parts need no solving
+    // Ones everywhere: such a start cannot be orthogonal to the answer.
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(block->size());
+    const Eigenpair pair = Solver({*block, ones, ones, sum_of_squares(*block)}, converged_only).solve();
     if (pair.value <= best * (1 + 1e-9)) continue;
     best = pair.value;
     answer.setZero();
     answer(part) = pair.vector;
   }
   return answer;
+}
+
+Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix) {
+  return principal_eigenvector(DenseGraph(matrix));
 }
 
 }  // namespace corral

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/ransac.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "grouping/filter_loops.h"
 #include "kernel/random.h"
+#include "kernel/triangle_fit.h"
 
 namespace corral {
 namespace {
 
 /// Smallest usable area of a sampled triangle in pr^2; below it the pose is decided by noise.
 constexpr double kDegenerateAreaPr2 = 1e-3;
+
+constexpr int kBatch = 128;  ///< iterations that are drawn and fitted together
 
 using Triple = std::array<int, 3>;
 
@@ -25,52 +31,160 @@ Triple draw_triple(RandomStream& random, int rows) {
   return {first, second, third};
 }
 
-class Consensus {
+/// The motion through one of the triples drawn.
+struct Hypothesis {
+  int iteration;
+  RigidTransform target_from_source;
+};
+
+/// One lane group: the corners of kLanes triangles on one side.
+struct Corners {
+  double numbers[3][3][kLanes];  ///< corner, axis, lane
+
+  void set(int lane, const Points& points, const Triple& rows) {
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (int axis = 0; axis < 3; ++axis) numbers[corner][axis][lane] = points(rows[corner], axis);
+  }
+  template <class Lanes>
+  CORRAL_INLINE void load(LanePoint<Lanes> (&corners)[3]) const {
+    for (int corner = 0; corner < 3; ++corner)
+      corners[corner] = {Lanes::load(numbers[corner][0]), Lanes::load(numbers[corner][1]),
+                         Lanes::load(numbers[corner][2])};
+  }
+};
+
+struct Motions {
+  double numbers[13][kLanes];  ///< the rotation by rows, the translation, 1 if usable; by lane
+
+  template <class Lanes>
+  CORRAL_INLINE void store(const LaneMotion<Lanes>& motion) {
+    const LanePoint<Lanes> points[4] = {motion.rows[0], motion.rows[1], motion.rows[2], motion.translation};
+    for (int i = 0; i < 4; ++i) {
+      points[i].x.store(numbers[3 * i]);
+      points[i].y.store(numbers[3 * i + 1]);
+      points[i].z.store(numbers[3 * i + 2]);
+    }
+    motion.usable.store(numbers[12]);
+  }
+  bool is_usable(int lane) const { return numbers[12][lane] > 0; }
+  RigidTransform get(int lane) const {
+    RigidTransform motion;
+    for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = numbers[i][lane];
+    for (int i = 0; i < 3; ++i) motion.translation(i) = numbers[9 + i][lane];
+    return motion;
+  }
+};
+
+class Search {
  public:
-  Consensus(const CorrespondenceSet& matches, double tolerance)
+  Search(const CorrespondenceSet& matches, const RansacOptions& options)
       : matches_(matches),
-        squared_tolerance_(tolerance * tolerance),
-        degenerate_area_(kDegenerateAreaPr2 * matches.resolution * matches.resolution),
-        squared_residuals_(matches.size()) {}
-
-  /// The pose through a triple; absent if the triple is degenerate.
-  std::optional<RigidTransform> fit(const Triple& rows) const {
-    if (is_degenerate(matches_.source_points, rows) || is_degenerate(matches_.target_points, rows)) return std::nullopt;
-    return fit_rigid_transform(matches_.source_points(rows, Eigen::all), matches_.target_points(rows, Eigen::all));
+        options_(options),
+        tolerance_(options.tolerance_pr * matches.resolution),
+        smallest_area_(kDegenerateAreaPr2 * matches.resolution * matches.resolution),
+        table_(matches),
+        last_iteration_(options.iterations) {
+    hypotheses_.reserve(kBatch);
   }
 
-  int count(const RigidTransform& pose) {
-    measure(pose);
-    return static_cast<int>((squared_residuals_ < squared_tolerance_).count());
-  }
-
-  Indices agreeing(const RigidTransform& pose) {
-    measure(pose);
-    Indices rows;
+  GroupingResult run() {
+    RandomStream random(options_.seed);
+    for (int first = 0; first < last_iteration_; first += kBatch) {
+      draw(random, first, std::min(kBatch, last_iteration_ - first));
+      judge();
+    }
+    GroupingResult result;
+    if (best_count_ == 0) return result;
     for (int row = 0; row < matches_.size(); ++row)
-      if (squared_residuals_(row) < squared_tolerance_) rows.push_back(row);
-    return rows;
+      if (agrees(best_, row)) result.selected.push_back(row);
+    result.target_from_source = best_;
+    return result;
   }
 
  private:
-  bool is_degenerate(const Points& points, const Triple& rows) const {
-    return !(triangle_area(points.row(rows[0]), points.row(rows[1]), points.row(rows[2])) > degenerate_area_);
+  /// The usable hypotheses of the next iterations, in order.
+  void draw(RandomStream& random, int first, int count) {
+    hypotheses_.clear();
+    for (int group = 0; group < count; group += kLanes) {
+      const int lanes_used = std::min(kLanes, count - group);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (lane < lanes_used)
+          triple_ = draw_triple(random, matches_.size());  // the lanes left over repeat the last one
+        source_.set(lane, matches_.source_points, triple_);
+        target_.set(lane, matches_.target_points, triple_);
+      }
+      vectorized([&](auto kind) {
+        using Lanes = typename decltype(kind)::Lanes;
+        LanePoint<Lanes> p[3], q[3];
+        source_.load(p);
+        target_.load(q);
+        motions_.store(fit_triangle(p, q, smallest_area_));
+      });
+      for (int lane = 0; lane < lanes_used; ++lane)
+        if (motions_.is_usable(lane)) hypotheses_.push_back({first + group + lane, motions_.get(lane)});
+    }
   }
 
-  void measure(const RigidTransform& pose) {
-    const auto p = matches_.source_points.array();
-    const auto q = matches_.target_points.array();
-    const Eigen::Matrix3d& r = pose.rotation;
-    const Eigen::Vector3d& t = pose.translation;
-    squared_residuals_ = (r(0, 0) * p.col(0) + r(0, 1) * p.col(1) + r(0, 2) * p.col(2) + t(0) - q.col(0)).square() +
-                         (r(1, 0) * p.col(0) + r(1, 1) * p.col(1) + r(1, 2) * p.col(2) + t(1) - q.col(1)).square() +
-                         (r(2, 0) * p.col(0) + r(2, 1) * p.col(1) + r(2, 2) * p.col(2) + t(2) - q.col(2)).square();
+  /// Keeps the best hypothesis. Floats count the matches that possibly agree, first in one direction, then in all: most
+  /// hypotheses have too few of them and are never counted exactly.
+  void judge() {
+    const int count = static_cast<int>(hypotheses_.size());
+    for (int first = 0; first < count; first += kPoseTile) {
+      PoseFilter poses[kPoseTile];
+      int near_plane[kPoseTile];
+      for (int k = 0; k < kPoseTile; ++k)  // those left over repeat the last one
+        poses[k] = PoseFilter(table_, at(std::min(first + k, count - 1)).target_from_source, tolerance_);
+      count_near_first_plane(table_, poses, near_plane);
+      for (int k = 0; k < kPoseTile && first + k < count; ++k) {
+        const Hypothesis& hypothesis = at(first + k);
+        if (hypothesis.iteration >= last_iteration_) return;
+        if (near_plane[k] <= best_count_ || count_near(table_, poses[k], near_plane[k], best_count_) <= best_count_)
+          continue;
+        keep_if_better(hypothesis);
+      }
+    }
   }
+
+  void keep_if_better(const Hypothesis& hypothesis) {
+    int agreeing = 0;
+    for (int row = 0; row < matches_.size(); ++row) agreeing += agrees(hypothesis.target_from_source, row);
+    if (agreeing <= best_count_) return;
+    best_count_ = agreeing;
+    best_ = hypothesis.target_from_source;
+    if (options_.confidence > 0) stop_when_confident(hypothesis.iteration);
+  }
+
+  /// Enough triples that with this probability one of them held right matches only, if the best count is their number.
+  void stop_when_confident(int iteration) {
+    const double all_right = std::pow(static_cast<double>(best_count_) / matches_.size(), 3);
+    const double needed = std::log1p(-options_.confidence) / std::log1p(-all_right);
+    if (needed < last_iteration_) last_iteration_ = std::max(iteration + 1, static_cast<int>(std::ceil(needed)));
+  }
+
+  bool agrees(const RigidTransform& motion, int row) const {
+    const Points& p = matches_.source_points;
+    const Points& q = matches_.target_points;
+    const Eigen::Matrix3d& r = motion.rotation;
+    const Eigen::Vector3d& t = motion.translation;
+    const double x = r(0, 0) * p(row, 0) + r(0, 1) * p(row, 1) + r(0, 2) * p(row, 2) + t(0) - q(row, 0);
+    const double y = r(1, 0) * p(row, 0) + r(1, 1) * p(row, 1) + r(1, 2) * p(row, 2) + t(1) - q(row, 1);
+    const double z = r(2, 0) * p(row, 0) + r(2, 1) * p(row, 1) + r(2, 2) * p(row, 2) + t(2) - q(row, 2);
+    return std::sqrt(x * x + y * y + z * z) < tolerance_;
+  }
+
+  const Hypothesis& at(int index) const { return hypotheses_[static_cast<std::size_t>(index)]; }
 
   const CorrespondenceSet& matches_;
-  const double squared_tolerance_;
-  const double degenerate_area_;
-  Eigen::ArrayXd squared_residuals_;
+  const RansacOptions& options_;
+  const double tolerance_, smallest_area_;
+  const FilterTable table_;
+  std::vector<Hypothesis> hypotheses_;
+  Triple triple_{};
+  Corners source_, target_;
+  Motions motions_;
+  int best_count_ = 0;
+  int last_iteration_;
+  RigidTransform best_;
 };
 
 }  // namespace
@@ -78,20 +192,8 @@ class Consensus {
 GroupingResult group_by_ransac(const CorrespondenceSet& matches, const RansacOptions& options) {
   validate_options(options, "ransac");
   matches.validate();
-  GroupingResult result;
-  if (matches.size() < 3) return result;
-
-  RandomStream random(options.seed);
-  Consensus consensus(matches, options.tolerance_pr * matches.resolution);
-  int best_count = 0;
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    const auto pose = consensus.fit(draw_triple(random, matches.size()));
-    if (!pose) continue;
-    const int count = consensus.count(*pose);
-    if (count > best_count) best_count = count, result.target_from_source = pose;
-  }
-  if (result.target_from_source) result.selected = consensus.agreeing(*result.target_from_source);
-  return result;
+  if (matches.size() < 3) return {};
+  return Search(matches, options).run();
 }
 
 }  // namespace corral

@@ -2,17 +2,22 @@
 #include "grouping/spectral.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "grouping/compatibility.h"
-#include "grouping/principal_eigenvector.h"
+#include "grouping/compatibility_graph.h"
 
 namespace corral {
 namespace {
 
 constexpr double kTie = 1e-9;
+constexpr int kNobody = -1;
+
+/// So few nodes that a lead of count^(-5/2) in the eigenvector is no tie.
+constexpr int kClearLead = 3900;
 
 /// r(i,j) where it reaches `similarity`, else 0; 1 on the diagonal.
-Eigen::MatrixXd compatibility_matrix(const CorrespondenceSet& matches, double similarity) {
+Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similarity) {
   const int rows = matches.size();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(rows, rows);
   for (int i = 0; i < rows; ++i)
@@ -24,33 +29,129 @@ Eigen::MatrixXd compatibility_matrix(const CorrespondenceSet& matches, double si
   return matrix;
 }
 
-/// Position of the largest entry; entries within kTie of it are equal, and the first of them is meant.
-Eigen::Index first_maximum(const Eigen::VectorXd& x) {
-  const double threshold = x.maxCoeff() - kTie;
-  Eigen::Index position = 0;
-  while (!(x(position) >= threshold)) ++position;
-  return position;
+/// The largest entry is ahead of all others by more than errors and ties.
+bool one_leads(const Eigen::VectorXd& entries, double error) {
+  double first = 0, second = 0;
+  for (const double entry : entries) {
+    second = std::max(second, std::min(first, entry));
+    first = std::max(first, entry);
+  }
+  return first - second > 2 * error + kTie;
 }
 
-/// Accepts one match after another; `refresh` gives the entries of the matches alive from those they had before.
-template <class Refresh>
-Indices accept_greedily(const Eigen::MatrixXd& weights, Eigen::VectorXd x, Refresh refresh) {
-  Indices alive(static_cast<std::size_t>(weights.rows()));
-  for (std::size_t i = 0; i < alive.size(); ++i) alive[i] = static_cast<int>(i);
-  Indices accepted;
-  while (!alive.empty() && x.maxCoeff() > kTie) {
-    const auto chosen = static_cast<std::size_t>(first_maximum(x));
-    accepted.push_back(alive[chosen]);
-    Indices survivors, positions;
-    for (std::size_t i = 0; i < alive.size(); ++i)
-      if (i != chosen && weights(alive[chosen], alive[i]) > 0)
-        survivors.push_back(alive[i]), positions.push_back(static_cast<int>(i));
-    alive = survivors;
-    x = refresh(alive, Eigen::VectorXd(x(positions)));
+/// The matches that are neither accepted nor in conflict with an accepted one, as nodes of a graph. Now and then the graph
+/// is renumbered to hold no others.
+class Alive {
+ public:
+  Alive(std::unique_ptr<GraphMatrix> graph, bool is_binary)
+      : graph_(std::move(graph)),
+        is_binary_(is_binary),
+        rows_(static_cast<std::size_t>(graph_->size())),
+        takes_part_(Eigen::VectorXd::Ones(graph_->size())),
+        degrees_(graph_->size()),
+        count_(graph_->size()) {
+    std::iota(rows_.begin(), rows_.end(), 0);
+    for (int node = 0; node < graph_->size(); ++node) {
+      graph_->get_column(node, column_);
+      degrees_(node) = static_cast<double>((column_.array() > 0).count());
+      sum_of_squares_ += column_.squaredNorm();
+    }
   }
-  std::sort(accepted.begin(), accepted.end());
-  return accepted;
-}
+
+  /// Whether anybody is compatible with anybody else.
+  bool has_edges() const { return (degrees_.array() > 1).any(); }
+
+  /// Computes the eigenvector of all.
+  void start() { entries_ = principal_eigenvector(*graph_); }
+
+  /// The node of the largest entry as it was computed last; entries within kTie are equal, and the first is meant. Nobody
+  /// if the largest is no more than that.
+  int largest() const {
+    const double most = count_ > 0 ? entries_.maxCoeff() : 0;
+    if (!(most > kTie)) return kNobody;
+    int node = 0;
+    while (!(takes_part_(node) > 0 && entries_(node) >= most - kTie)) ++node;
+    return node;
+  }
+
+  /// The node of the largest entry in the eigenvector of those alive, computed as exactly as that needs.
+  int choose() {
+    const int obvious = compatible_with_all();
+    if (obvious != kNobody || count_ == 0) return obvious;
+    if (is_surely_connected() || connected_parts(*graph_, takes_part_).size() == 1) {
+      // A start that is positive everywhere: it cannot be orthogonal to the answer.
+      const Eigen::VectorXd start = (entries_.array() + 1e-3 / count_).matrix().cwiseProduct(takes_part_);
+      entries_ = principal_eigenvector({*graph_, takes_part_, start, sum_of_squares_}, one_leads);
+    } else {
+      renumber();
+      start();
+    }
+    return largest();
+  }
+
+  /// Takes a match and those in conflict with it out of the graph. Returns its row in the table.
+  int accept(int chosen) {
+    const int row = rows_[static_cast<std::size_t>(chosen)];
+    graph_->get_column(chosen, column_);
+    Indices leaving;
+    for (int node = 0; node < graph_->size(); ++node)
+      if (takes_part_(node) > 0 && (node == chosen || !(column_(node) > 0))) leaving.push_back(node);
+    for (const int node : leaving) remove(node);
+    if (4 * count_ < 3 * graph_->size()) renumber();
+    return row;
+  }
+
+ private:
+  /// The first node that is compatible with all others. Where M has no entries but 0 and 1 it is the one that choose()
+  /// looks for: x_f = S / l, with S the sum of all entries and l the eigenvalue. A node that misses somebody has
+  /// x_i = (S - what it misses) / l, and misses at least one x_k >= x_f / (l - 1), for k is compatible with f and with
+  /// itself. With x_f >= count^(-1/2) and l <= count the lead of f is at least count^(-5/2).
+  int compatible_with_all() const {
+    if (!is_binary_ || count_ > kClearLead) return kNobody;
+    for (int node = 0; node < graph_->size(); ++node)
+      if (takes_part_(node) > 0 && degrees_(node) == count_) return node;
+    return kNobody;
+  }
+
+  /// Any two nodes that are not adjacent share a neighbour.
+  bool is_surely_connected() const {
+    double smallest = count_;
+    for (int node = 0; node < graph_->size(); ++node)
+      if (takes_part_(node) > 0) smallest = std::min(smallest, degrees_(node));
+    return 2 * smallest > count_;
+  }
+
+  void remove(int node) {
+    graph_->get_column(node, column_);
+    column_ = column_.cwiseProduct(takes_part_);
+    sum_of_squares_ -= 2 * column_.squaredNorm() - column_(node) * column_(node);
+    degrees_ -= (column_.array() > 0).cast<double>().matrix();
+    takes_part_(node) = entries_(node) = 0;
+    --count_;
+  }
+
+  void renumber() {
+    Indices nodes;
+    for (int node = 0; node < graph_->size(); ++node)
+      if (takes_part_(node) > 0) nodes.push_back(node);
+    graph_ = graph_->restricted(nodes);
+    for (std::size_t i = 0; i < nodes.size(); ++i) rows_[i] = rows_[static_cast<std::size_t>(nodes[i])];
+    rows_.resize(nodes.size());
+    entries_ = Eigen::VectorXd(entries_(nodes));
+    degrees_ = Eigen::VectorXd(degrees_(nodes));
+    takes_part_ = Eigen::VectorXd::Ones(graph_->size());
+  }
+
+  std::unique_ptr<GraphMatrix> graph_;
+  bool is_binary_;              ///< no entries but 0 and 1
+  Indices rows_;                ///< of the table, by node
+  Eigen::VectorXd takes_part_;  ///< 1 or 0, by node
+  Eigen::VectorXd entries_;     ///< of the last eigenvector, by node; 0 for those that left since
+  Eigen::VectorXd degrees_;     ///< number of compatible matches alive, with itself, by node
+  double sum_of_squares_ = 0;   ///< of the matrix of those alive
+  int count_;                   ///< of those alive
+  Eigen::VectorXd column_;
+};
 
 }  // namespace
 
@@ -58,18 +159,17 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
   validate_options(options, "st");
   matches.validate();
   GroupingResult result;
-  Eigen::MatrixXd weights = compatibility_matrix(matches, options.similarity);
-  if ((weights.array() > 0).count() == weights.rows()) return result;  // nobody agrees with anybody else
-  if (!options.weighted) weights = (weights.array() > 0).cast<double>();
-
-  const Eigen::VectorXd full = principal_eigenvector(weights);
-  if (options.once) {
-    result.selected = accept_greedily(weights, full, [](const Indices&, const Eigen::VectorXd& x) { return x; });
-  } else {
-    result.selected = accept_greedily(weights, full, [&](const Indices& alive, const Eigen::VectorXd&) {
-      return principal_eigenvector(weights(alive, alive));
-    });
-  }
+  std::unique_ptr<GraphMatrix> graph;
+  if (options.weighted)
+    graph = std::make_unique<DenseGraph>(weighted_matrix(matches, options.similarity));
+  else
+    graph = std::make_unique<CompatibilityGraph>(matches, options.similarity);
+  Alive alive(std::move(graph), !options.weighted);
+  if (!alive.has_edges()) return result;  // nobody agrees with anybody else
+  alive.start();
+  for (int node = alive.largest(); node != kNobody; node = options.once ? alive.largest() : alive.choose())
+    result.selected.push_back(alive.accept(node));
+  std::sort(result.selected.begin(), result.selected.end());
   return result;
 }
 

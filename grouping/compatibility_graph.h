@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grouping/principal_eigenvector.h"
+#include "kernel/correspondence_set.h"
+
+namespace corral {
+
+/// Which matches are compatible, as one bit for each ordered pair:
+///
+///   M_ij = [ r(i,j) >= similarity ],  M_ii = 1,   r the rigidity ratio
+///
+/// Eight columns share a byte. A product looks each byte up in a table of the 256 sums of eight numbers ("four Russians").
+class CompatibilityGraph : public GraphMatrix {
+ public:
+  CompatibilityGraph(const CorrespondenceSet& matches, double similarity);
+
+  int size() const override { return size_; }
+  void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override;
+  void get_column(int node, Eigen::VectorXd& column) const override;
+  std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const override;
+
+ private:
+  explicit CompatibilityGraph(int size);
+  std::uint8_t* bytes(int block) { return &bytes_[static_cast<std::size_t>(block) * stride_]; }
+  const std::uint8_t* bytes(int block) const { return &bytes_[static_cast<std::size_t>(block) * stride_]; }
+
+  int size_;
+  std::size_t stride_;               ///< rows, padded
+  std::vector<std::uint8_t> bytes_;  ///< block of eight columns by block, one byte a row: column 8 block + k in bit k
+};
+
+}  // namespace corral

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+// Compiled with contraction: a multiplication and an addition may be one instruction.
+#include "grouping/filter_loops.h"
+
+#include <limits>
+
+namespace corral {
+namespace {
+
+/// A point in every lane: sixteen of a column, or one repeated.
+template <class Floats>
+struct Point {
+  Floats x, y, z;
+  static CORRAL_INLINE Point load(const float* const (&columns)[3], int row) {
+    return {Floats::load(columns[0] + row), Floats::load(columns[1] + row), Floats::load(columns[2] + row)};
+  }
+  static CORRAL_INLINE Point fill(const float* const (&columns)[3], int row) {
+    return {Floats::fill(columns[0][row]), Floats::fill(columns[1][row]), Floats::fill(columns[2][row])};
+  }
+};
+
+template <class Floats>
+CORRAL_INLINE Floats squared_distance(const Point<Floats>& a, const Point<Floats>& b) {
+  const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  return x * x + y * y + z * z;
+}
+
+struct Columns {
+  explicit Columns(const FilterTable& table)
+      : source{table.source(0), table.source(1), table.source(2)},
+        target{table.target(0), table.target(1), table.target(2)} {}
+  const float *source[3], *target[3];
+};
+
+/// Adds 1 in the lanes where a comparison holds.
+template <class Mask, class Floats>
+CORRAL_INLINE Floats counted(Mask mask, Floats count, Floats one) {
+  return select(mask, count + one, count);
+}
+
+template <class Floats>
+CORRAL_INLINE int total(Floats counts) {
+  float lanes[kFloatLanes];
+  counts.store(lanes);
+  float sum = 0;
+  for (const float lane : lanes) sum += lane;
+  return static_cast<int>(sum);
+}
+
+template <class Floats>
+struct Consistency {
+  Floats square, fourth, factor, one;
+  explicit Consistency(const ConsistencyFilter& filter)
+      : square(Floats::fill(filter.square)),
+        fourth(Floats::fill(filter.fourth)),
+        factor(Floats::fill(filter.factor)),
+        one(Floats::fill(1)) {}
+
+  CORRAL_INLINE auto possible(const Point<Floats>& p, const Point<Floats>& q, const Point<Floats>& other_p,
+                              const Point<Floats>& other_q) const {
+    const Floats a = squared_distance(p, other_p), b = squared_distance(q, other_q);
+    const Floats difference = a - b;
+    return difference * difference + fourth <= factor * larger(a + b, square);  // NaN stays NaN in `larger`
+  }
+};
+
+}  // namespace
+
+void count_consistent(const FilterTable& table, const ConsistencyFilter& filter, float* counts) {
+  const Columns columns(table);
+  const int end = table.padded_rows();
+  for (int row = 0; row < end; ++row) counts[row] = 0;
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    constexpr int kTile = 4;  // rows whose counts stay in registers
+    const Consistency<Floats> test(filter);
+    for (int first = 0; first < end; first += kFloatLanes) {
+      // Every pair once: the lanes of this group against themselves ...
+      const auto p = Point<Floats>::load(columns.source, first), q = Point<Floats>::load(columns.target, first);
+      Floats inside = Floats::load(counts + first);
+      for (int row = first; row < first + kFloatLanes; ++row)
+        inside = counted(
+            test.possible(p, q, Point<Floats>::fill(columns.source, row), Point<Floats>::fill(columns.target, row)),
+            inside, test.one);
+      inside.store(counts + first);
+      // ... and its rows against the lanes of all later groups, counted on both sides.
+      for (int tile = first; tile < first + kFloatLanes; tile += kTile) {
+        Point<Floats> rows_p[kTile], rows_q[kTile];
+        Floats of_row[kTile];
+        for (int i = 0; i < kTile; ++i) {
+          rows_p[i] = Point<Floats>::fill(columns.source, tile + i);
+          rows_q[i] = Point<Floats>::fill(columns.target, tile + i);
+          of_row[i] = Floats::fill(0);
+        }
+        for (int lane = first + kFloatLanes; lane < end; lane += kFloatLanes) {
+          const auto lane_p = Point<Floats>::load(columns.source, lane);
+          const auto lane_q = Point<Floats>::load(columns.target, lane);
+          Floats of_lanes = Floats::load(counts + lane);
+          for (int i = 0; i < kTile; ++i) {
+            const auto possible = test.possible(lane_p, lane_q, rows_p[i], rows_q[i]);
+            of_lanes = counted(possible, of_lanes, test.one);
+            of_row[i] = counted(possible, of_row[i], test.one);
+          }
+          of_lanes.store(counts + lane);
+        }
+        for (int i = 0; i < kTile; ++i) counts[tile + i] += static_cast<float>(total(of_row[i]));
+      }
+    }
+  });
+}
+
+void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
+  const Columns columns(table);
+  const int end = table.padded_rows();
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Floats one = Floats::fill(1);
+    Floats r[kPoseTile][3], t[kPoseTile], reach[kPoseTile], count[kPoseTile];
+    for (int k = 0; k < kPoseTile; ++k) {
+      for (int axis = 0; axis < 3; ++axis) r[k][axis] = Floats::fill(poses[k].rotation[axis]);
+      t[k] = Floats::fill(poses[k].translation[0]);
+      reach[k] = Floats::fill(poses[k].reach);
+      count[k] = Floats::fill(0);
+    }
+    for (int row = 0; row < end; row += kFloatLanes) {
+      const auto p = Point<Floats>::load(columns.source, row);
+      const Floats x = Floats::load(columns.target[0] + row);
+      for (int k = 0; k < kPoseTile; ++k) {
+        const Floats residual = r[k][0] * p.x + r[k][1] * p.y + r[k][2] * p.z + (t[k] - x);
+        count[k] = counted(magnitude(residual) <= reach[k], count[k], one);
+      }
+    }
+    for (int k = 0; k < kPoseTile; ++k) counts[k] = total(count[k]);
+  });
+}
+
+int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
+  constexpr int kStretch = 16 * kFloatLanes;  // rows between two looks at the count
+  const Columns columns(table);
+  const int end = table.padded_rows();
+  int near = 0;
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Floats one = Floats::fill(1), reach = Floats::fill(pose.reach), limit = Floats::fill(pose.possible);
+    Floats r[9], t[3];
+    for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
+    for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
+    int left_in_plane = near_plane;
+    for (int first = 0; first < end && near + left_in_plane > hopeless; first += kStretch) {
+      Floats in_plane = Floats::fill(0), inside = Floats::fill(0);
+      for (int row = first; row < end && row < first + kStretch; row += kFloatLanes) {
+        const auto p = Point<Floats>::load(columns.source, row), q = Point<Floats>::load(columns.target, row);
+        const Floats x = r[0] * p.x + r[1] * p.y + r[2] * p.z + (t[0] - q.x);
+        const Floats y = r[3] * p.x + r[4] * p.y + r[5] * p.z + (t[1] - q.y);
+        const Floats z = r[6] * p.x + r[7] * p.y + r[8] * p.z + (t[2] - q.z);
+        in_plane = counted(magnitude(x) <= reach, in_plane, one);
+        inside = counted(x * x + y * y + z * z <= limit, inside, one);
+      }
+      near += total(inside);
+      left_in_plane -= total(in_plane);
+    }
+    if (near + left_in_plane <= hopeless) near = hopeless;
+  });
+  return near;
+}
+
+namespace {
+
+template <class Floats>
+struct Similarity {
+  Floats certain_slope, possible_slope, offset;
+  explicit Similarity(const SimilarityFilter& filter)
+      : certain_slope(Floats::fill(filter.certain_slope)),
+        possible_slope(Floats::fill(filter.possible_slope)),
+        offset(Floats::fill(filter.offset)) {}
+  CORRAL_INLINE auto certain(Floats lesser, Floats greater) const { return greater * certain_slope + offset <= lesser; }
+  CORRAL_INLINE auto possible(Floats lesser, Floats greater) const {
+    return greater * possible_slope <= lesser + offset;
+  }
+};
+
+}  // namespace
+
+void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,
+                    std::uint8_t* possible) {
+  const Columns columns(table);
+  const int end = table.padded_rows(), first = 8 * block;
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Similarity<Floats> test(filter);
+    const Floats zero = Floats::fill(0);
+    Floats bits[8];
+    for (int i = 0; i < 8; ++i) bits[i] = Floats::fill(static_cast<float>(1 << i));
+    for (int row = 0; row < end; row += kFloatLanes) {
+      const auto p = Point<Floats>::load(columns.source, row), q = Point<Floats>::load(columns.target, row);
+      Floats are_certain = zero, are_possible = zero;
+      for (int i = 0; i < 8; ++i) {
+        const Floats a = squared_distance(p, Point<Floats>::fill(columns.source, first + i));
+        const Floats b = squared_distance(q, Point<Floats>::fill(columns.target, first + i));
+        const Floats lesser = smaller(a, b), greater = larger(a, b);
+        are_certain = counted(test.certain(lesser, greater), are_certain, bits[i]);
+        are_possible = counted(test.possible(lesser, greater), are_possible, bits[i]);
+      }
+      are_certain.store(certain + row);
+      are_possible.store(possible + row);
+    }
+  });
+}
+
+void measure_distances(const FilterTable& table, int row, float* squared) {
+  const Columns columns(table);
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const auto center = Point<Floats>::fill(columns.source, row);
+    for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes)
+      squared_distance(Point<Floats>::load(columns.source, lane), center).store(squared + lane);
+  });
+  squared[row] = std::numeric_limits<float>::infinity();
+}
+
+void count_up_to(const float* numbers, int count, const float (&limits)[kLimits], int (&counts)[kLimits]) {
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Floats one = Floats::fill(1);
+    Floats most[kLimits], found[kLimits];
+    for (int k = 0; k < kLimits; ++k) most[k] = Floats::fill(limits[k]), found[k] = Floats::fill(0);
+    for (int lane = 0; lane < count; lane += kFloatLanes) {
+      const Floats number = Floats::load(numbers + lane);
+      for (int k = 0; k < kLimits; ++k) found[k] = counted(number <= most[k], found[k], one);
+    }
+    for (int k = 0; k < kLimits; ++k) counts[k] = total(found[k]);
+  });
+}
+
+int mark_between(const float* numbers, int count, float first, float last, std::uint8_t* marks) {
+  int below = 0;
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Floats zero = Floats::fill(0), one = Floats::fill(1), from = Floats::fill(first), to = Floats::fill(last);
+    Floats before = zero;
+    for (int lane = 0; lane < count; lane += kFloatLanes) {
+      const Floats number = Floats::load(numbers + lane);
+      const Floats is_below = select(number < from, one, zero), is_up_to = select(number <= to, one, zero);
+      before = before + is_below;
+      (is_up_to - is_below).store(marks + lane);
+    }
+    below = total(before);
+  });
+  return below;
+}
+
+FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row, const float* squared,
+                       float limit, const float* trusted) {
+  const Columns columns(table);
+  FilteredVotes votes;
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Similarity<Floats> test(filter);
+    const Floats zero = Floats::fill(0), most = Floats::fill(limit);
+    const auto q = Point<Floats>::fill(columns.target, row);
+    Floats asked = zero, certain = zero, possible = zero;
+    for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes) {
+      const Floats a = Floats::load(squared + lane);
+      const Floats voter = select(a < most, Floats::load(trusted + lane), zero);
+      const Floats b = squared_distance(Point<Floats>::load(columns.target, lane), q);
+      const Floats lesser = smaller(a, b), greater = larger(a, b);
+      asked = asked + voter;
+      certain = counted(test.certain(lesser, greater), certain, voter);
+      possible = counted(test.possible(lesser, greater), possible, voter);
+    }
+    votes = {total(asked), total(certain), total(possible)};
+  });
+  return votes;
+}
+
+FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter, const FilterTable& table, int row,
+                         const PoseFilter& pose) {
+  const Columns columns(voters), asking(table);
+  FilteredVotes votes{voters.rows(), 0, 0};
+  vectorized([&](auto kind) {
+    using Floats = typename decltype(kind)::Floats;
+    const Similarity<Floats> test(filter);
+    const Floats zero = Floats::fill(0), one = Floats::fill(1);
+    const Floats surely = Floats::fill(pose.certain), perhaps = Floats::fill(pose.possible);
+    const auto p = Point<Floats>::fill(asking.source, row), q = Point<Floats>::fill(asking.target, row);
+    Floats r[9], t[3];
+    for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
+    for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
+    Floats certain = zero, possible = zero;
+    for (int lane = 0; lane < voters.padded_rows(); lane += kFloatLanes) {
+      const auto voter_p = Point<Floats>::load(columns.source, lane);
+      const auto voter_q = Point<Floats>::load(columns.target, lane);
+      const Floats a = squared_distance(voter_p, p), b = squared_distance(voter_q, q);
+      const Floats lesser = smaller(a, b), greater = larger(a, b);
+      const Floats x = r[0] * voter_p.x + r[1] * voter_p.y + r[2] * voter_p.z + (t[0] - voter_q.x);
+      const Floats y = r[3] * voter_p.x + r[4] * voter_p.y + r[5] * voter_p.z + (t[1] - voter_q.y);
+      const Floats z = r[6] * voter_p.x + r[7] * voter_p.y + r[8] * voter_p.z + (t[2] - voter_q.z);
+      const Floats residual = x * x + y * y + z * z;
+      certain = counted(test.certain(lesser, greater), certain, select(residual < surely, one, zero));
+      possible = counted(test.possible(lesser, greater), possible, select(residual <= perhaps, one, zero));
+    }
+    votes.certain = total(certain);
+    votes.possible = total(possible);
+  });
+  return votes;
+}
+
+}  // namespace corral

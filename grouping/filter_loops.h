@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "grouping/filter.h"
+
+namespace corral {
+
+// The loops behind the filters: float arithmetic on whole columns, for the vector level of the machine. Their sums may
+// differ from level to level by what the filters allow for; nothing else may depend on them. Only sources include this.
+
+/// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included. Whole numbers, exact
+/// below 2^24 rows.
+void count_consistent(const FilterTable& table, const ConsistencyFilter& filter, float* counts);
+
+/// How many poses are looked at together.
+constexpr int kPoseTile = 4;
+
+/// counts[k]: for how many rows the first component of the residual under pose k is possibly below the tolerance.
+void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]);
+
+/// For how many rows the residual is possibly below the tolerance; any number up to `hopeless` once it is certain that
+/// there are no more. `near_plane` is the count above for this pose.
+int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless);
+
+/// One bit for each pair of a row and the columns 8 block .. 8 block + 7: certain[i] and possible[i] hold those of row i,
+/// the first column in the lowest bit. Padded.
+void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,
+                    std::uint8_t* possible);
+
+/// squared[j], padded: the squared distance in the source from a row to row j, of unit FilterTable::unit(); infinite for
+/// the row itself.
+void measure_distances(const FilterTable& table, int row, float* squared);
+
+/// How many limits are counted together.
+constexpr int kLimits = 4;
+
+/// counts[k]: how many of `count` (padded) numbers are at most limits[k].
+void count_up_to(const float* numbers, int count, const float (&limits)[kLimits], int (&counts)[kLimits]);
+
+/// marks[i], padded: 1 where numbers[i] is in first .. last, else 0. Returns how many of `count` (padded) are below.
+int mark_between(const float* numbers, int count, float first, float last, std::uint8_t* marks);
+
+/// Some votes, as far as floats can tell.
+struct FilteredVotes {
+  int asked = 0, certain = 0, possible = 0;
+};
+
+/// A row asks the trusted rows (1, others 0) whose squared distance is below `limit` whether they agree with it.
+FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row, const float* squared,
+                       float limit, const float* trusted);
+
+/// A row of `table` asks all of `voters` whether they agree with it and have a small residual under its pose.
+FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter, const FilterTable& table, int row,
+                         const PoseFilter& pose);
+
+}  // namespace corral
