@@ -24,8 +24,6 @@ namespace corral::benchmarks {
 namespace {
 
 using benchmark::DoNotOptimize;
-using Call = std::function<void()>;
-using Setup = std::function<Call()>;  ///< prepares what is not timed; an empty call: there is nothing to do
 
 class Registry {
  public:
@@ -33,28 +31,13 @@ class Registry {
 
   /// `peer` may be empty: no other library does this here.
   void add(Workload& load, const std::string& stage, const Setup& ours, const std::string& library, const Setup& peer) {
-    const auto vertices = static_cast<int>(load.mesh().vertices.rows());
-    const std::size_t row = table_.add_row({load.name(), stage, peer ? library : "", vertices, 0, 0});
-    add_side(load.name() + "/" + stage + "/ours", ours, row, true);
-    if (peer) add_side(load.name() + "/" + stage + "/" + library, peer, row, false);
+    const std::string vertices = std::to_string(load.mesh().vertices.rows());
+    const std::size_t row = table_.add_row({{load.name(), vertices, stage}, peer ? library : "", 0, 0});
+    table_.add_side(load.name() + "/" + stage + "/ours", ours, row, Side::Ours);
+    if (peer) table_.add_side(load.name() + "/" + stage + "/" + library, peer, row, Side::Peer);
   }
 
  private:
-  void add_side(const std::string& name, const Setup& setup, std::size_t row, bool is_ours) {
-    if (!table_.expect(name, row, is_ours)) return;  // one run of ours stands beside several peers
-    const auto run = [setup](benchmark::State& state) {
-      const Call call = setup();
-      if (!call) return state.SkipWithError("too few descriptors");
-      for (auto _ : state) call();
-    };
-    benchmark::RegisterBenchmark(name.c_str(), run)
-        ->Unit(benchmark::kMillisecond)
-        ->MeasureProcessCPUTime()
-        ->MinTime(0.05)
-        ->Repetitions(5)
-        ->ReportAggregatesOnly();
-  }
-
   RatioTable& table_;
 };
 
@@ -164,7 +147,7 @@ int run(int argc, char** argv) {
     std::cerr << "no mesh: name some, or let apps/quickstart fetch the default data\n";
     return 2;
   }
-  RatioTable table(as_csv);
+  RatioTable table({"mesh", "vertices", "stage"}, as_csv);
   Registry registry(table);
   for (Workload& load : workloads) add_stages(registry, load);
   benchmark::RunSpecifiedBenchmarks(&table);

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace corral::benchmarks {
+
+/// What one core reaches at the present vector level in single precision, in GFLOP/s: independent chains of a * b + c in
+/// registers, two operations each, fused where the level has the instruction. The best of several short runs.
+double multiply_add_peak();
+
+}  // namespace corral::benchmarks

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "tests/benchmarks/natural_tables.h"
+
+#include "apps/match_pair.h"
+#include "kernel/evaluation.h"
+#include "kernel/surface/perturbation.h"
+
+namespace corral::benchmarks {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+constexpr double kNoise_pr = 0.3;
+constexpr double kSeenShare = 0.3;
+constexpr double kInlier_pr = 4;
+
+struct Detector {
+  const char* name;
+  double radius_pr;
+};
+constexpr Detector kDetectors[] = {{"harris", 3}, {"harris", 2}, {"harris", 1.5}, {"uniform", 1.5}, {"uniform", 1}};
+
+/// The share of the vertices that is farthest along x, with the triangles among them.
+Mesh part_of(const Mesh& mesh, double share) {
+  const Indices order = rows_by_place(mesh.vertices);
+  const auto count = static_cast<std::size_t>(share * static_cast<double>(order.size()));
+  const Indices kept(order.end() - static_cast<std::ptrdiff_t>(count), order.end());
+  std::vector<int> number(order.size(), -1);
+  for (std::size_t i = 0; i < kept.size(); ++i) number[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
+  Mesh part;
+  part.vertices = mesh.vertices(kept, Eigen::all);
+  part.triangles = mesh.triangles.unaryExpr([&](int vertex) { return number[static_cast<std::size_t>(vertex)]; });
+  Indices faces;
+  for (int face = 0; face < part.triangles.rows(); ++face)
+    if (part.triangles.row(face).minCoeff() >= 0) faces.push_back(face);
+  part.triangles = Triangles(part.triangles(faces, Eigen::all));
+  return part;
+}
+
+CorrespondenceSet matches_of(const Mesh& source, const Mesh& target, const Detector& detector) {
+  MatchSettings settings;
+  settings.detector = detector.name;
+  settings.keypoint_radius_pr = detector.radius_pr;
+  settings.threads = 1;
+  return match_pair(source, target, settings).matches;
+}
+
+/// `count` rows, evenly spread.
+CorrespondenceSet spread(const CorrespondenceSet& matches, int count) {
+  Indices rows;
+  for (int i = 0; i < count; ++i) rows.push_back(static_cast<int>(std::int64_t{i} * matches.size() / count));
+  CorrespondenceSet chosen;
+  chosen.source_points = matches.source_points(rows, Eigen::all);
+  chosen.target_points = matches.target_points(rows, Eigen::all);
+  chosen.feature_distance = matches.feature_distance(rows);
+  chosen.second_feature_distance = matches.second_feature_distance(rows);
+  for (const int row : rows) {
+    const auto i = static_cast<std::size_t>(row);
+    chosen.source_frames.push_back(matches.source_frames[i]);
+    chosen.target_frames.push_back(matches.target_frames[i]);
+    chosen.source_keypoints.push_back(matches.source_keypoints[i]);
+    chosen.target_keypoints.push_back(matches.target_keypoints[i]);
+  }
+  chosen.resolution = matches.resolution;
+  chosen.source_centroid = matches.source_centroid;
+  return chosen;
+}
+
+double inlier_ratio(const CorrespondenceSet& matches, const RigidTransform& truth) {
+  double inliers = 0;
+  for (const bool is_inlier : label_inliers(matches, truth, kInlier_pr)) inliers += is_inlier;
+  return inliers / matches.size();
+}
+
+}  // namespace
+
+std::vector<NaturalTable> natural_tables(Workload& load, const std::vector<int>& sizes) {
+  const RigidTransform truth = random_motion(load.mesh(), kSeed);
+  const Mesh target =
+      add_gaussian_noise(move_mesh(part_of(load.mesh(), kSeenShare), truth), kNoise_pr * load.resolution(), kSeed);
+  std::vector<NaturalTable> tables;
+  CorrespondenceSet all;
+  auto detector = std::begin(kDetectors);
+  for (const int size : sizes) {
+    while (all.size() < size && detector != std::end(kDetectors)) all = matches_of(load.mesh(), target, *detector++);
+    if (all.size() < size) break;
+    tables.push_back({load.name(), spread(all, size), 0});
+    tables.back().inlier_ratio = inlier_ratio(tables.back().matches, truth);
+  }
+  return tables;
+}
+
+}  // namespace corral::benchmarks
