@@ -20,6 +20,8 @@ class CompatibilityGraph : public GraphMatrix {
 
   int size() const override { return size_; }
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override;
+  Eigen::VectorXd degrees() const override;
+  double sum_of_squares() const override { return degrees().sum(); }
   void get_column(int node, Eigen::VectorXd& column) const override;
   std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const override;
 

@@ -97,11 +97,18 @@ class Solver {
 
 bool converged_only(const Eigen::VectorXd&, double) { return false; }
 
-double sum_of_squares(const GraphMatrix& matrix) {
-  double sum = 0;
+/// The nodes that are connected with `first`, itself included, in the order found; takes them out of `unseen`.
+Indices take_part_of(const GraphMatrix& matrix, int first, Eigen::VectorXd& unseen) {
+  Indices part{first};
+  unseen(first) = 0;
+  auto left = static_cast<int>(unseen.sum());
   Eigen::VectorXd column;
-  for (int node = 0; node < matrix.size(); ++node) matrix.get_column(node, column), sum += column.squaredNorm();
-  return sum;
+  for (std::size_t next = 0; next < part.size() && left > 0; ++next) {
+    matrix.get_column(part[next], column);
+    for (Eigen::Index other = 0; other < column.size(); ++other)
+      if (column(other) * unseen(other) > 0) unseen(other) = 0, part.push_back(static_cast<int>(other)), --left;
+  }
+  return part;
 }
 
 /// The largest row sum, which no eigenvalue exceeds.
@@ -113,25 +120,12 @@ double largest_row_sum(const GraphMatrix& matrix) {
 
 }  // namespace
 
-std::vector<Indices> connected_parts(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part) {
-  std::vector<Indices> parts;
-  Eigen::VectorXd unseen = takes_part, column;
-  auto left = static_cast<int>(takes_part.sum());
-  const auto see = [&](int node, Indices& part) { unseen(node) = 0, part.push_back(node), --left; };
-  const int size = matrix.size();
-  for (int first = 0; left > 0; ++first) {
-    if (!(unseen(first) > 0)) continue;
-    Indices part;
-    see(first, part);
-    for (std::size_t next = 0; next < part.size() && left > 0; ++next) {
-      matrix.get_column(part[next], column);
-      for (int other = 0; other < size; ++other)
-        if (column(other) * unseen(other) > 0) see(other, part);
-    }
-    std::sort(part.begin(), part.end());
-    parts.push_back(part);
-  }
-  return parts;
+bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part) {
+  Eigen::VectorXd unseen = takes_part;
+  Eigen::Index first = 0;
+  unseen.maxCoeff(&first);
+  take_part_of(matrix, static_cast<int>(first), unseen);
+  return unseen.isZero(0);
 }
 
 Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const WillDo& will_do) {
@@ -139,15 +133,17 @@ Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const Wil
 }
 
 Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix) {
-  const Eigen::VectorXd all = Eigen::VectorXd::Ones(matrix.size());
-  Eigen::VectorXd answer = Eigen::VectorXd::Zero(matrix.size());
+  Eigen::VectorXd answer = Eigen::VectorXd::Zero(matrix.size()), unseen = Eigen::VectorXd::Ones(matrix.size());
   double best = 0;
-  for (const Indices& part : connected_parts(matrix, all)) {
+  for (int first = 0; first < matrix.size(); ++first) {
+    if (!(unseen(first) > 0)) continue;
+    Indices part = take_part_of(matrix, first, unseen);
+    std::sort(part.begin(), part.end());
     const auto block = matrix.restricted(part);
     if (largest_row_sum(*block) <= best * (1 + 1e-9)) continue;  // most parts need no solving
     // Ones everywhere: such a start cannot be orthogonal to the answer.
     const Eigen::VectorXd ones = Eigen::VectorXd::Ones(block->size());
-    const Eigenpair pair = Solver({*block, ones, ones, sum_of_squares(*block)}, converged_only).solve();
+    const Eigenpair pair = Solver({*block, ones, ones, block->sum_of_squares()}, converged_only).solve();
     if (pair.value <= best * (1 + 1e-9)) continue;
     best = pair.value;
     answer.setZero();

@@ -16,6 +16,9 @@ class GraphMatrix {
   virtual int size() const = 0;
   /// to = M from. Both have the size of the matrix.
   virtual void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const = 0;
+  /// The number of positive entries of each row, and the sum of the squares of all entries.
+  virtual Eigen::VectorXd degrees() const = 0;
+  virtual double sum_of_squares() const = 0;
   /// column = M e_node.
   virtual void get_column(int node, Eigen::VectorXd& column) const = 0;
   /// The rows and columns of some nodes, in that order.
@@ -30,6 +33,8 @@ class DenseGraph : public GraphMatrix {
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override {
     to.noalias() = matrix_.selfadjointView<Eigen::Lower>() * from;
   }
+  Eigen::VectorXd degrees() const override { return (matrix_.array() > 0).cast<double>().colwise().sum().transpose(); }
+  double sum_of_squares() const override { return matrix_.squaredNorm(); }
   void get_column(int node, Eigen::VectorXd& column) const override { column = matrix_.col(node); }
   std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const override {
     return std::make_unique<DenseGraph>(matrix_(nodes, nodes));
@@ -64,7 +69,7 @@ struct ConnectedProblem {
 /// eigenvalues add up to the squares of all entries. Where that bound is too weak, the answer is the converged one.
 Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const WillDo& will_do);
 
-/// The connected parts of the nodes that take part, each ascending, in the order of their lowest node.
-std::vector<Indices> connected_parts(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part);
+/// Whether those who take part are connected among each other.
+bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part);
 
 }  // namespace corral

@@ -48,14 +48,10 @@ class Alive {
         is_binary_(is_binary),
         rows_(static_cast<std::size_t>(graph_->size())),
         takes_part_(Eigen::VectorXd::Ones(graph_->size())),
-        degrees_(graph_->size()),
+        degrees_(graph_->degrees()),
+        sum_of_squares_(graph_->sum_of_squares()),
         count_(graph_->size()) {
     std::iota(rows_.begin(), rows_.end(), 0);
-    for (int node = 0; node < graph_->size(); ++node) {
-      graph_->get_column(node, column_);
-      degrees_(node) = static_cast<double>((column_.array() > 0).count());
-      sum_of_squares_ += column_.squaredNorm();
-    }
   }
 
   /// Whether anybody is compatible with anybody else.
@@ -78,7 +74,7 @@ class Alive {
   int choose() {
     const int obvious = compatible_with_all();
     if (obvious != kNobody || count_ == 0) return obvious;
-    if (is_surely_connected() || connected_parts(*graph_, takes_part_).size() == 1) {
+    if (is_surely_connected() || is_connected(*graph_, takes_part_)) {
       // A start that is positive everywhere: it cannot be orthogonal to the answer.
       const Eigen::VectorXd start = (entries_.array() + 1e-3 / count_).matrix().cwiseProduct(takes_part_);
       entries_ = principal_eigenvector({*graph_, takes_part_, start, sum_of_squares_}, one_leads);
@@ -123,9 +119,12 @@ class Alive {
 
   void remove(int node) {
     graph_->get_column(node, column_);
-    column_ = column_.cwiseProduct(takes_part_);
-    sum_of_squares_ -= 2 * column_.squaredNorm() - column_(node) * column_(node);
-    degrees_ -= (column_.array() > 0).cast<double>().matrix();
+    const double squares = is_binary_ ? degrees_(node) : column_.cwiseProduct(takes_part_).squaredNorm();
+    sum_of_squares_ -= 2 * squares - column_(node) * column_(node);
+    if (is_binary_)
+      degrees_ -= column_;
+    else
+      degrees_ -= (column_.array() > 0).cast<double>().matrix();
     takes_part_(node) = entries_(node) = 0;
     --count_;
   }
@@ -148,7 +147,7 @@ class Alive {
   Eigen::VectorXd takes_part_;  ///< 1 or 0, by node
   Eigen::VectorXd entries_;     ///< of the last eigenvector, by node; 0 for those that left since
   Eigen::VectorXd degrees_;     ///< number of compatible matches alive, with itself, by node
-  double sum_of_squares_ = 0;   ///< of the matrix of those alive
+  double sum_of_squares_;       ///< of the matrix of those alive
   int count_;                   ///< of those alive
   Eigen::VectorXd column_;
 };

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
+#include <cmath>
 #include <string>
 
 #include "kernel/error.h"
@@ -10,8 +11,10 @@
 namespace corral {
 
 bool is_rotation(const Eigen::Matrix3d& matrix, double tolerance) {
-  const Eigen::Matrix3d excess = matrix * matrix.transpose() - Eigen::Matrix3d::Identity();
-  return excess.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= tolerance && matrix.determinant() > 0;
+  const Eigen::Vector3d x = matrix.row(0), y = matrix.row(1), z = matrix.row(2);
+  const auto is_near = [=](double number, double expected) { return std::abs(number - expected) <= tolerance; };
+  return is_near(x.dot(x), 1) && is_near(y.dot(y), 1) && is_near(z.dot(z), 1) && is_near(x.dot(y), 0) &&
+         is_near(x.dot(z), 0) && is_near(y.dot(z), 0) && x.cross(y).dot(z) > 0;
 }
 
 std::optional<RigidTransform> fit_rigid_transform(const Points& source, const Points& target) {

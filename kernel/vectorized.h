@@ -59,8 +59,15 @@ struct Register {
   static constexpr int kCount = sizeof(Numbers) / sizeof(Number);
   Numbers value;
 
-  /// Outside of inner loops, unless the number comes from memory there: g++ 12 may set lane by lane.
-  static CORRAL_INLINE Register fill(Number number) { return {number - Numbers{}}; }
+  static CORRAL_INLINE Register fill(Number number) {
+    if (sizeof(Numbers) == 16 || __builtin_constant_p(number)) return {number - Numbers{}};
+    Register result;  // left alone, g++ 12 sets lane by lane in inner loops
+    if constexpr (sizeof(Number) == 4)
+      asm("vbroadcastss %1, %0" : "=v"(result.value) : "vm"(number));
+    else
+      asm("vbroadcastsd %1, %0" : "=v"(result.value) : "vm"(number));
+    return result;
+  }
   static CORRAL_INLINE Register load(const Number* from) {
     Register result;
     __builtin_memcpy(&result.value, from, sizeof(Numbers));
