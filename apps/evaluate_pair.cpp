@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "apps/report.h"
 #include "apps/stopwatch.h"
 
 namespace corral {
@@ -14,7 +15,7 @@ PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, d
 }
 
 std::string MethodRecord::status() const {
-  if (!failure.empty()) return "failed: " + failure;
+  if (!failure.empty()) return (is_too_large ? "too large: " : "failed: ") + failure;
   if (pose.target_from_source && !pose.converged) return "not converged";
   return to_text(pose.status);
 }
@@ -33,10 +34,20 @@ TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet&
   return timed;
 }
 
+std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit) {
+  const double needed = grouper.working_memory ? grouper.working_memory(matches) : 0;
+  if (!(needed > memory_limit)) return "";
+  return "needs " + fixed(needed / 1e6, 1) + " MB, the limit is " + fixed(memory_limit / 1e6, 1) + " MB";
+}
+
 MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
-                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat) {
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
+                             double memory_limit) {
   MethodRecord record;
   record.method = name;
+  record.failure = too_large(grouper, matches.size(), memory_limit);
+  record.is_too_large = !record.failure.empty();
+  if (record.is_too_large) return record;
   try {
     TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
     record.found = std::move(timed.found);

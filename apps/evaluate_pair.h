@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,14 +29,15 @@ PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, d
 /// One method on one pair. What could not be had is absent.
 struct MethodRecord {
   std::string method;
-  std::string failure;  ///< why the method gave no answer; empty if it did
+  std::string failure;        ///< why the method gave no answer; empty if it did
+  bool is_too_large = false;  ///< it was not asked, since it would need more memory than it may
   GroupingResult found;
   double time_ms = 0;                  ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
   std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
 
-  /// "refined", "not converged" (a pose that was still moving), why there is no pose, or "failed: ...".
+  /// "refined", "not converged" (a pose that was still moving), why there is no pose, "too large: ..." or "failed: ...".
   std::string status() const;
 };
 
@@ -46,8 +48,13 @@ struct TimedGrouping {
 };
 TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat);
 
-/// Groups, scores, refines and judges; a method that refuses the table is a record of that.
+/// Why a method may not be asked for so many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
+std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit);
+
+/// Groups, scores, refines and judges; a method that refuses the table, or needs more bytes than the limit, is a record
+/// of that.
 MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
-                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat);
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
+                             double memory_limit = std::numeric_limits<double>::infinity());
 
 }  // namespace corral

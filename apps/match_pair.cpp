@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/peak_memory.h"
+#include "apps/memory.h"
 #include "apps/stopwatch.h"
 #include "apps/workers.h"
 #include "kernel/error.h"

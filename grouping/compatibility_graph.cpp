@@ -101,6 +101,10 @@ CompatibilityGraph::CompatibilityGraph(const CorrespondenceSet& matches, double 
   }
 }
 
+double CompatibilityGraph::memory(int rows) {
+  return static_cast<double>(padded(rows, kFloatLanes)) * (padded(blocks_of(rows), kTogether) + 1);
+}
+
 void CompatibilityGraph::multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const {
   AlignedColumn sums(stride_, 0);
   vectorized([&](auto kind) {

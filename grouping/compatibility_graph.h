@@ -18,6 +18,9 @@ class CompatibilityGraph : public GraphMatrix {
  public:
   CompatibilityGraph(const CorrespondenceSet& matches, double similarity);
 
+  /// Bytes for so many rows.
+  static double memory(int rows);
+
   int size() const override { return size_; }
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override;
   Eigen::VectorXd degrees() const override;

@@ -34,6 +34,9 @@ class FilterTable {
  public:
   explicit FilterTable(const CorrespondenceSet& matches);
 
+  /// Bytes for so many rows.
+  static double memory(int rows) { return 6.0 * sizeof(float) * padded(rows, kFloatLanes); }
+
   /// Some of its rows, in the same unit.
   FilterTable subset(const Indices& rows) const;
 

@@ -96,4 +96,8 @@ GroupingResult group_by_geometric_consistency(const CorrespondenceSet& matches,
   return result;
 }
 
+double working_memory(int matches, const GeometricConsistencyOptions&) {
+  return FilterTable::memory(matches) + 32.0 * matches;  // the counts or the order, and stars or cliques as they grow
+}
+
 }  // namespace corral

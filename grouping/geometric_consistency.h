@@ -43,5 +43,6 @@ struct GeometricConsistencyOptions {
 /// Departs   Ties go to the smaller seed row (the paper does not say). The clique has no RANSAC behind it.
 GroupingResult group_by_geometric_consistency(const CorrespondenceSet& matches,
                                               const GeometricConsistencyOptions& options = {});
+double working_memory(int matches, const GeometricConsistencyOptions& options);
 
 }  // namespace corral

@@ -18,6 +18,12 @@ struct GroupingResult {
   std::optional<RigidTransform> target_from_source;  ///< the method's own pose; absent where it makes none
 };
 
+// Beside each method stands
+//
+//   double working_memory(int matches, const <Method>Options& options);
+//
+// the most bytes that it will hold at a time for so many matches, the answer included and the table not.
+
 /// A grouper with its options bound: a pure function of the table.
 using GroupFunction = std::function<GroupingResult(const CorrespondenceSet&)>;
 

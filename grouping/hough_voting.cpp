@@ -166,4 +166,10 @@ GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const Hou
   return result;
 }
 
+double working_memory(int matches, const HoughVotingOptions& options) {
+  // The votes, their cells and the selection as it grows; a table of less than 4 slots for each share of a vote.
+  const double shares = options.cells == HoughCells::Box ? 1 : 8;
+  return matches * (32.0 + 24.0 + 12.0 + 4 * 32.0 * shares) + 256;
+}
+
 }  // namespace corral

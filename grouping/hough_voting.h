@@ -43,5 +43,6 @@ struct HoughVotingOptions {
 ///           has one bin. A match with an invalid frame on either side has no
 ///           vote and is not selected.
 GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options = {});
+double working_memory(int matches, const HoughVotingOptions& options);
 
 }  // namespace corral

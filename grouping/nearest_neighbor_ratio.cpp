@@ -21,4 +21,8 @@ GroupingResult group_by_nearest_neighbor_ratio(const CorrespondenceSet& matches,
   return result;
 }
 
+double working_memory(int matches, const NearestNeighborRatioOptions&) {
+  return 24.0 * matches;  // the scores, and the selection as it grows
+}
+
 }  // namespace corral

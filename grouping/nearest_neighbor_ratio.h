@@ -40,5 +40,6 @@ struct NearestNeighborRatioOptions {
 ///           without a second nearest feature, or with d2 = 0, is never kept and scores 0.
 GroupingResult group_by_nearest_neighbor_ratio(const CorrespondenceSet& matches,
                                                const NearestNeighborRatioOptions& options = {});
+double working_memory(int matches, const NearestNeighborRatioOptions& options);
 
 }  // namespace corral

@@ -31,4 +31,7 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// Throws    InvalidInput if a score is not finite.
 Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule);
 
+/// The most bytes that it holds for so many scores: a sorted copy, the classes and the answer, some as they grow.
+constexpr double otsu_memory(int scores) { return 72.0 * scores + 4096; }
+
 }  // namespace corral

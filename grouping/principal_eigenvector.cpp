@@ -139,11 +139,13 @@ Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix) {
     if (!(unseen(first) > 0)) continue;
     Indices part = take_part_of(matrix, first, unseen);
     std::sort(part.begin(), part.end());
-    const auto block = matrix.restricted(part);
-    if (largest_row_sum(*block) <= best * (1 + 1e-9)) continue;  // most parts need no solving
+    const bool is_whole = static_cast<int>(part.size()) == matrix.size();
+    const auto copy = is_whole ? nullptr : matrix.restricted(part);
+    const GraphMatrix& block = is_whole ? matrix : *copy;
+    if (largest_row_sum(block) <= best * (1 + 1e-9)) continue;  // most parts need no solving
     // Ones everywhere: such a start cannot be orthogonal to the answer.
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(block->size());
-    const Eigenpair pair = Solver({*block, ones, ones, block->sum_of_squares()}, converged_only).solve();
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(block.size());
+    const Eigenpair pair = Solver({block, ones, ones, block.sum_of_squares()}, converged_only).solve();
     if (pair.value <= best * (1 + 1e-9)) continue;
     best = pair.value;
     answer.setZero();

@@ -196,4 +196,8 @@ GroupingResult group_by_ransac(const CorrespondenceSet& matches, const RansacOpt
   return Search(matches, options).run();
 }
 
+double working_memory(int matches, const RansacOptions&) {
+  return FilterTable::memory(matches) + 12.0 * matches + 200.0 * kBatch;  // the selection as it grows, the hypotheses
+}
+
 }  // namespace corral

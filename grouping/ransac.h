@@ -39,5 +39,6 @@ struct RansacOptions {
 ///           not say). The first triple with the largest count wins. Fewer than 3 matches, or no triple with a match in
 ///           agreement: nothing selected, no pose.
 GroupingResult group_by_ransac(const CorrespondenceSet& matches, const RansacOptions& options = {});
+double working_memory(int matches, const RansacOptions& options);
 
 }  // namespace corral

@@ -18,7 +18,8 @@ Grouper entry(const char* name, const char* title, const char* principle, const 
   const auto configure = [who = std::string(name), method](const OptionOverrides& overrides) {
     const Options options = parse_options<Options>(overrides, who);
     const auto group = [method, options](const CorrespondenceSet& matches) { return method(matches, options); };
-    return ConfiguredGrouper{group, describe_options(options)};
+    const auto memory = [options](int matches) { return working_memory(matches, options); };
+    return ConfiguredGrouper{group, describe_options(options), memory};
   };
   return {name, title, principle, citation, describe_options(Options{}), configure};
 }

@@ -13,6 +13,7 @@ namespace corral {
 struct ConfiguredGrouper {
   GroupFunction group;
   std::vector<OptionValue> options;
+  std::function<double(int matches)> working_memory = {};  ///< bytes at most (see grouper.h); empty if nobody knows
 };
 
 /// One method as the command line, the tests and the README know it.

@@ -213,4 +213,9 @@ GroupingResult group_by_search_of_inliers(const CorrespondenceSet& matches, cons
   return result;
 }
 
+double working_memory(int matches, const SearchOfInliersOptions&) {
+  // Two tables, columns of floats and marks, the neighbours that are sorted, votes, ranks and scores, some as they grow.
+  return 2 * FilterTable::memory(matches) + 160.0 * matches + otsu_memory(matches) + 4096;
+}
+
 }  // namespace corral

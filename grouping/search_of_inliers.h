@@ -57,5 +57,6 @@ struct SearchOfInliersOptions {
 ///           form uses the pair's resolution (Buch: the target's), leaves the Otsu rule to its option, and needs d2 (Buch
 ///           falls back to the median of d1).
 GroupingResult group_by_search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options = {});
+double working_memory(int matches, const SearchOfInliersOptions& options);
 
 }  // namespace corral

@@ -27,5 +27,6 @@ struct SimilarityScoreOptions {
 /// Throws    InvalidInput: column absent, ragged or non-finite.
 /// Departs   Otsu is exact over the scores, not over a histogram (the paper gives no bins); all scores equal: all kept.
 GroupingResult group_by_similarity_score(const CorrespondenceSet& matches, const SimilarityScoreOptions& options = {});
+double working_memory(int matches, const SimilarityScoreOptions& options);
 
 }  // namespace corral

@@ -6,6 +6,7 @@
 
 #include "grouping/compatibility.h"
 #include "grouping/compatibility_graph.h"
+#include "grouping/filter.h"
 
 namespace corral {
 namespace {
@@ -170,6 +171,13 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
     result.selected.push_back(alive.accept(node));
   std::sort(result.selected.begin(), result.selected.end());
   return result;
+}
+
+double working_memory(int matches, const SpectralOptions& options) {
+  // The graph, and a copy while it is renumbered or a part of it is solved; then columns of doubles, most of them the
+  // basis of the eigenvector.
+  const double n = matches, graph = options.weighted ? 8 * n * n : CompatibilityGraph::memory(matches);
+  return 2 * graph + FilterTable::memory(matches) + 500 * n + 65536;
 }
 
 }  // namespace corral

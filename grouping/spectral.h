@@ -38,5 +38,6 @@ struct SpectralOptions {
 /// Departs   The eigenvector is the converged one (see principal_eigenvector.h), not that of a fixed number of rounds. Entries within 1e-9 of the maximum are ties: the lowest row. Conflict means incompatible (the paper
 ///           leaves it open). Two equally heavy parts: the one with the lowest row first. No compatible pair: nothing.
 GroupingResult group_by_spectral(const CorrespondenceSet& matches, const SpectralOptions& options = {});
+double working_memory(int matches, const SpectralOptions& options);
 
 }  // namespace corral

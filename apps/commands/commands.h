@@ -40,6 +40,9 @@ void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
 void check_threshold(double threshold_pr);        ///< throws UsageError
 
+/// --memory-limit, in bytes; half of the machine unless it is given.
+void add_memory_limit(CLI::App& command, std::uint64_t& bytes);
+
 /// The names of all methods with something between them.
 std::string method_list(const std::string& separator);
 

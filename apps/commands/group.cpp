@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
+#include "apps/memory.h"
 #include "apps/report.h"
 #include "io/file.h"
 #include "io/group_file.h"
@@ -14,6 +15,7 @@ struct Settings {
   std::string matches, method, output;
   std::vector<std::string> set;
   int repeat = 1;
+  std::uint64_t memory_limit = 0;
   bool json = false;
 };
 
@@ -22,17 +24,27 @@ int group(const Settings& settings) {
   if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
   if (!settings.output.empty()) check_writable(settings.output);
   const CorrespondenceSet matches = read_matches(settings.matches);
-  const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
-  if (!settings.json || !settings.output.empty())
-    put(settings.output, group_text({matches.size(), timed.found.selected, timed.found.scores}));
-  if (settings.json)
-    put("", Json{{"method", settings.method},
+  const std::string refusal = too_large(grouper, matches.size(), static_cast<double>(settings.memory_limit));
+  Json report = {{"method", settings.method},
                  {"options", to_json(grouper.options)},
                  {"matches", matches.size()},
-                 {"selected", timed.found.selected.size()},
-                 {"time_ms", timed.time_ms},
-                 {"repeat", settings.repeat}});
-  return kOk;
+                 {"working_memory_bytes", static_cast<std::uint64_t>(grouper.working_memory(matches.size()))},
+                 {"selected", nullptr},
+                 {"time_ms", nullptr},
+                 {"repeat", settings.repeat},
+                 {"status", refusal.empty() ? "grouped" : "too large: " + refusal}};
+  if (refusal.empty()) {
+    const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
+    report["selected"] = timed.found.selected.size();
+    report["time_ms"] = timed.time_ms;
+    if (!settings.json || !settings.output.empty())
+      put(settings.output, group_text({matches.size(), timed.found.selected, timed.found.scores}));
+  } else {
+    say("corral group: " + settings.method + " is too large for " + std::to_string(matches.size()) +
+        " matches: " + refusal + " (--memory-limit)");
+  }
+  if (settings.json) put("", report);
+  return refusal.empty() ? kOk : kPartial;
 }
 
 }  // namespace
@@ -58,6 +70,15 @@ ConfiguredGrouper configure_grouper(const std::string& method, const std::vector
   }
 }
 
+void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
+  bytes = static_cast<std::uint64_t>(half_of_memory());
+  command
+      .add_option("--memory-limit", bytes,
+                  "Most memory that a method may hold, such as 500MB or 2GB; one that would need more is not asked "
+                  "(default: half of the machine)")
+      ->transform(CLI::AsSizeValue(true));
+}
+
 void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper on a table of matches");
   auto settings = std::make_shared<Settings>();
@@ -70,6 +91,7 @@ void add_group(CLI::App& app, Action& action) {
   command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)")
       ->type_name("FILE");
   command->add_option("--repeat", settings->repeat, "Timed calls; the median is reported")->capture_default_str();
+  add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json,
                     "Counts and time as JSON on standard output (the selection then needs -o)");
   command->footer(

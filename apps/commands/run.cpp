@@ -22,6 +22,7 @@ struct Settings {
   std::string source, target, truth, methods = "all", output;
   double threshold_pr = 4;
   int repeat = 1;
+  std::uint64_t memory_limit = 0;
   MatchSettings match;
   bool json = false, verbose = false;
 };
@@ -125,8 +126,8 @@ PairRun evaluate(const Settings& settings) {
   }
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
     progress.begin(run.methods[i]);
-    run.records.push_back(
-        evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat));
+    run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
+                                          static_cast<double>(settings.memory_limit)));
   }
   return run;
 }
@@ -179,6 +180,7 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")
       ->capture_default_str();
+  add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);

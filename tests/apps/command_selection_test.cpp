@@ -49,7 +49,8 @@ TEST(Group, JsonHoldsTheOptionsAndTheMedianTime) {
       place.corral("group matches.csv -m ransac --set seed=7 --set iterations=500 --repeat 3 --json -o g.csv");
   expect_ok(outcome);
   const auto json = outcome.json();
-  EXPECT_THAT(keys_of(json), ElementsAre("matches", "method", "options", "repeat", "selected", "time_ms"));
+  EXPECT_THAT(keys_of(json), ElementsAre("matches", "method", "options", "repeat", "selected", "status", "time_ms",
+                                         "working_memory_bytes"));
   EXPECT_EQ(json["method"], "ransac");
   EXPECT_EQ(json["matches"], 100);
   EXPECT_EQ(json["repeat"], 3);
@@ -58,6 +59,19 @@ TEST(Group, JsonHoldsTheOptionsAndTheMedianTime) {
   EXPECT_EQ(json["options"]["iterations"], 500);
   EXPECT_EQ(json["options"]["tolerance_pr"], 5);
   EXPECT_EQ(json["selected"], read_group(place / "g.csv").selected.size());
+}
+
+TEST(Group, TooLargeIsAnAnswer) {
+  const Workplace place;
+  place.put_problem();
+  const Outcome outcome = place.corral("group matches.csv -m st --memory-limit 10kB --json -o g.csv");
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("st is too large for 100 matches: needs 0.1 MB, the limit is 0.0 MB"));
+  EXPECT_THAT(outcome.json()["status"].get<std::string>(), HasSubstr("too large"));
+  EXPECT_TRUE(outcome.json()["selected"].is_null());
+  EXPECT_FALSE(std::filesystem::exists(place / "g.csv"));
+  EXPECT_EQ(place.corral("group matches.csv -m st --memory-limit 1MB").status, 0);
+  EXPECT_EQ(place.corral("group matches.csv -m st --memory-limit much").status, 2);
 }
 
 TEST(Group, AMethodSaysWhichColumnIsAbsent) {

@@ -91,6 +91,18 @@ TEST(EvaluateMethod, AMethodThatThrowsIsARecord) {
             "failed: no");
 }
 
+TEST(EvaluateMethod, AMethodThatNeedsTooMuchMemoryIsARecordAndIsNotAsked) {
+  const Problem pair = problem();
+  ConfiguredGrouper greedy = throwing(std::runtime_error("asked"));
+  greedy.working_memory = [](int matches) { return 1e6 * matches; };
+  const MethodRecord refused = evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 99e6);
+  EXPECT_EQ(refused.status(), "too large: needs 100.0 MB, the limit is 99.0 MB");
+  EXPECT_TRUE(refused.is_too_large);
+  EXPECT_FALSE(refused.score.has_value());
+  EXPECT_FALSE(refused.pose.target_from_source.has_value());
+  EXPECT_EQ(evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 100e6).status(), "failed: asked");
+}
+
 TEST(EvaluateMethod, ASelectionThatIsNoneIsARecord) {
   const Problem pair = problem();
   for (const Indices& rows : {Indices{0, 1, 100}, Indices{-1, 0, 1}, Indices{5, 4, 3}})
