@@ -59,7 +59,7 @@ std::vector<NaturalTable> read_tables(const std::vector<std::string>& paths, con
   for (Workload& load : read_workloads(paths, ""))
     for (NaturalTable& table : natural_tables(load, sizes)) tables.push_back(std::move(table));
   for (const NaturalTable& table : tables)
-    std::fprintf(stderr, "%s n = %d: %.1f %% inliers\n", table.mesh.c_str(), table.matches.size(),
+    std::fprintf(stderr, "%s n = %d: %.1f %% inliers\n", table.scene.c_str(), table.matches.size(),
                  100 * table.inlier_ratio);
   return tables;
 }
@@ -76,11 +76,11 @@ std::size_t add_row(RatioTable& ratios, const NaturalTable& table, const Grouper
   const std::string count = std::to_string(table.matches.size());
   char inliers[16];
   std::snprintf(inliers, sizeof inliers, "%.3f", table.inlier_ratio);
-  const std::size_t row = ratios.add_row({{table.mesh, count, inliers, grouper.name}, peer ? peer->library : "", 0, 0});
+  const std::size_t row = ratios.add_row({{table.scene, count, inliers, grouper.name}, peer ? peer->library : "", 0, 0});
 
   const bool is_long = grouper.name == "st" && table.matches.size() >= 5000;
   const int repetitions = is_long ? 1 : 5;
-  const std::string name = table.mesh + "/" + count + "/" + grouper.name + "/";
+  const std::string name = table.scene + "/" + count + "/" + grouper.name + "/";
   const Setup ours = [&table, group = grouper.configure({}).group]() -> Call {
     return [&table, group] { benchmark::DoNotOptimize(group(table.matches)); };
   };
@@ -109,7 +109,7 @@ int run(int argc, char** argv) {
     return 2;
   }
   const std::vector<NaturalTable> tables = read_tables(arguments.paths, arguments.sizes);
-  RatioTable ratios({"mesh", "n", "inliers", "grouper"}, arguments.as_csv);
+  RatioTable ratios({"scene", "n", "inliers", "grouper"}, arguments.as_csv);
   std::vector<Case> cases;
   for (const Grouper& grouper : groupers())
     for (const NaturalTable& table : tables) cases.push_back(add_case(ratios, table, grouper));

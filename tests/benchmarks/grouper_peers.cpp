@@ -41,7 +41,7 @@ std::vector<GrouperPeer> plain_peers() {
 
 #ifdef CORRAL_WITH_SPECTRA
 std::vector<GrouperPeer> spectra_peers() {
-  return {{"st", "spectra", 5000,
+  return {{"st", "spectra", 2000,
            on_table([](const CorrespondenceSet& matches) { return peers::group_with_spectra(matches, 0.6); })}};
 }
 #else

@@ -71,21 +71,29 @@ double inlier_ratio(const CorrespondenceSet& matches, const RigidTransform& trut
   return inliers / matches.size();
 }
 
+void add_tables(const std::string& scene, const Mesh& source, const Mesh& target, const RigidTransform& truth,
+                const std::vector<int>& sizes, std::vector<NaturalTable>& tables) {
+  CorrespondenceSet all;
+  auto detector = std::begin(kDetectors);
+  for (const int size : sizes) {
+    while (all.size() < size && detector != std::end(kDetectors)) all = matches_of(source, target, *detector++);
+    if (all.size() < size) return;
+    tables.push_back({scene, spread(all, size), 0});
+    tables.back().inlier_ratio = inlier_ratio(tables.back().matches, truth);
+  }
+}
+
 }  // namespace
 
 std::vector<NaturalTable> natural_tables(Workload& load, const std::vector<int>& sizes) {
   const RigidTransform truth = random_motion(load.mesh(), kSeed);
-  const Mesh target =
-      add_gaussian_noise(move_mesh(part_of(load.mesh(), kSeenShare), truth), kNoise_pr * load.resolution(), kSeed);
   std::vector<NaturalTable> tables;
-  CorrespondenceSet all;
-  auto detector = std::begin(kDetectors);
-  for (const int size : sizes) {
-    while (all.size() < size && detector != std::end(kDetectors)) all = matches_of(load.mesh(), target, *detector++);
-    if (all.size() < size) break;
-    tables.push_back({load.name(), spread(all, size), 0});
-    tables.back().inlier_ratio = inlier_ratio(tables.back().matches, truth);
-  }
+  const auto add = [&](const std::string& scene, const Mesh& seen) {
+    const Mesh target = add_gaussian_noise(move_mesh(seen, truth), kNoise_pr * load.resolution(), kSeed);
+    add_tables(scene, load.mesh(), target, truth, sizes, tables);
+  };
+  add(load.name(), load.mesh());
+  add(load.name() + ":part", part_of(load.mesh(), kSeenShare));
   return tables;
 }
 
