@@ -2,11 +2,11 @@
 #include "grouping/hough_voting.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <tuple>
 
 namespace corral {
 namespace {
@@ -18,51 +18,53 @@ struct Vote {
   Eigen::Vector3d position;
 };
 
-/// The cell of a vote. Whole numbers held as doubles: votes may lie anywhere a double can.
-using Cell = Eigen::Vector3d;
+/// Three whole numbers held as doubles: votes may lie anywhere a double can.
+using Cell = std::array<double, 3>;
 
-bool before(const Cell& a, const Cell& b) { return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z()); }
+constexpr std::uint64_t kOddMultiplier = 0x9e3779b97f4a7c15u;
+
+std::uint64_t hash(std::uint64_t cell) { return cell * kOddMultiplier; }
+std::uint64_t hash(const Cell& cell) {
+  std::uint64_t word = 0;
+  for (const double number : cell) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof(bits));
+    word = (word ^ bits) * kOddMultiplier;
+    word ^= word >> 32;
+  }
+  return word * kOddMultiplier;
+}
 
 /// Sums of weights by cell: a hash table whose memory depends on the number of cells used, not on their extent.
+template <class Key>
 class Accumulator {
  public:
   explicit Accumulator(std::size_t most_cells) {
     while ((std::size_t{1} << bits_) < 2 * most_cells) ++bits_;
-    slots_.resize(std::size_t{1} << bits_, {Cell::Zero(), 0});
+    slots_.resize(std::size_t{1} << bits_, {Key{}, 0});
   }
 
-  void add(const Cell& cell, double weight) {
-    std::size_t at = hash(cell);
+  void add(const Key& cell, double weight) {
+    std::size_t at = static_cast<std::size_t>(hash(cell) >> (64 - bits_));
     while (slots_[at].weight > 0 && slots_[at].cell != cell) at = (at + 1) & (slots_.size() - 1);
     slots_[at].cell = cell;
     slots_[at].weight += weight;
   }
 
   /// The cell with the largest sum; the first in order among equals.
-  Cell fullest() const {
-    Slot best{Cell::Zero(), 0};
+  Key fullest() const {
+    const Slot* best = &slots_.front();
     for (const Slot& slot : slots_)
-      if (slot.weight > best.weight || (slot.weight == best.weight && slot.weight > 0 && before(slot.cell, best.cell)))
-        best = slot;
-    return best.cell;
+      if (slot.weight > best->weight || (slot.weight == best->weight && slot.weight > 0 && slot.cell < best->cell))
+        best = &slot;
+    return best->cell;
   }
 
  private:
   struct Slot {
-    Cell cell;
+    Key cell;
     double weight;  ///< 0: free
   };
-
-  std::size_t hash(const Cell& cell) const {
-    std::uint64_t word = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &cell(axis), sizeof(bits));
-      word = (word ^ bits) * 0x9e3779b97f4a7c15u;
-      word ^= word >> 32;
-    }
-    return static_cast<std::size_t>(word * 0x9e3779b97f4a7c15u >> (64 - bits_));
-  }
 
   int bits_ = 1;
   std::vector<Slot> slots_;
@@ -106,21 +108,31 @@ Indices select_in_box(const std::vector<Vote>& votes, int bins, double resolutio
   const Box box = bounding_box(votes);
   const Eigen::Array3d low = box.low, extent = box.high - box.low, width = extent / bins;
   const double indivisible = rounding_extent(box, resolution);
-  Accumulator accumulator(votes.size());
-  std::vector<Cell> cells;
+  const auto count = static_cast<std::uint64_t>(bins);
+  Accumulator<std::uint64_t> accumulator(votes.size());
+  std::vector<std::uint64_t> cells;  // (x bins + y) bins + z: they compare as x, then y, then z do
   cells.reserve(votes.size());
   for (const Vote& vote : votes) {
-    Cell cell = Cell::Zero();
-    for (int axis = 0; axis < 3; ++axis)
-      if (extent(axis) > indivisible)
-        cell(axis) = std::min(std::floor((vote.position(axis) - low(axis)) / width(axis)), bins - 1.0);
+    std::uint64_t cell = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = extent(axis) > indivisible ? (vote.position(axis) - low(axis)) / width(axis) : 0;
+      cell = cell * count + std::min(static_cast<std::uint64_t>(place), count - 1);
+    }
     accumulator.add(cell, 1);
     cells.push_back(cell);
   }
-  const Cell peak = accumulator.fullest();
+  const std::uint64_t peak = accumulator.fullest();
+  const auto distance = [count](std::uint64_t a, std::uint64_t b, std::uint64_t step) {
+    const auto i = static_cast<std::int64_t>(a / step % count), j = static_cast<std::int64_t>(b / step % count);
+    return std::abs(i - j);
+  };
+  const std::uint64_t reach = count * count;  // cells farther apart in number share no face
   Indices rows;
-  for (std::size_t i = 0; i < votes.size(); ++i)
-    if ((cells[i] - peak).lpNorm<1>() <= 1) rows.push_back(votes[i].row);
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    if (cells[i] + reach < peak || peak + reach < cells[i]) continue;
+    if (distance(cells[i], peak, 1) + distance(cells[i], peak, count) + distance(cells[i], peak, reach) <= 1)
+      rows.push_back(votes[i].row);
+  }
   return rows;
 }
 
@@ -133,14 +145,15 @@ void visit_shares(const Vote& vote, const Eigen::Array3d& low, double side, Visi
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Array3d step(corner & 1, (corner >> 1) & 1, corner >> 2);
     const double weight = (step * part + (1 - step) * (1 - part)).prod();
-    if (weight > 0) visit((base + step + 0.0).matrix(), weight);  // + 0: no negative zero
+    const Eigen::Array3d at = base + step + 0.0;  // + 0: no negative zero
+    if (weight > 0) visit(Cell{at(0), at(1), at(2)}, weight);
   }
 }
 
 /// Each vote is shared among 8 cubes; those with a share in the fullest win.
 Indices select_in_cubes(const std::vector<Vote>& votes, double side) {
   const Eigen::Array3d low = bounding_box(votes).low;
-  Accumulator accumulator(8 * votes.size());
+  Accumulator<Cell> accumulator(8 * votes.size());
   for (const Vote& vote : votes)
     visit_shares(vote, low, side, [&](const Cell& cell, double weight) { accumulator.add(cell, weight); });
   const Cell peak = accumulator.fullest();

@@ -120,10 +120,10 @@ double largest_row_sum(const GraphMatrix& matrix) {
 
 }  // namespace
 
-bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part) {
-  Eigen::VectorXd unseen = takes_part;
+bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& weights) {
+  Eigen::VectorXd unseen = (weights.array() > 0).cast<double>();
   Eigen::Index first = 0;
-  unseen.maxCoeff(&first);
+  weights.maxCoeff(&first);
   take_part_of(matrix, static_cast<int>(first), unseen);
   return unseen.isZero(0);
 }

@@ -69,7 +69,7 @@ struct ConnectedProblem {
 /// eigenvalues add up to the squares of all entries. Where that bound is too weak, the answer is the converged one.
 Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const WillDo& will_do);
 
-/// Whether those who take part are connected among each other.
-bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& takes_part);
+/// Whether the nodes with a positive weight are connected among each other. The search begins where it is largest.
+bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& weights);
 
 }  // namespace corral

@@ -75,7 +75,7 @@ class Alive {
   int choose() {
     const int obvious = compatible_with_all();
     if (obvious != kNobody || count_ == 0) return obvious;
-    if (is_surely_connected() || is_connected(*graph_, takes_part_)) {
+    if (is_surely_connected() || is_connected(*graph_, degrees_.cwiseProduct(takes_part_))) {
       // A start that is positive everywhere: it cannot be orthogonal to the answer.
       const Eigen::VectorXd start = (entries_.array() + 1e-3 / count_).matrix().cwiseProduct(takes_part_);
       entries_ = principal_eigenvector({*graph_, takes_part_, start, sum_of_squares_}, one_leads);
