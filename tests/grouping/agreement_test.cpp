@@ -168,6 +168,21 @@ TEST(Agreement, SpectralOnLargerTables) {
   expect_same_spectral({}, {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.2, 1)});
 }
 
+/// The reference draws the same triples, so that the first of the best must be the same one.
+TEST(Agreement, RansacOnTheSameTriples) {
+  for (const std::uint64_t seed : {1, 2, 77}) {
+    SCOPED_TRACE("seed of the triples " + std::to_string(seed));
+    RansacOptions options;
+    options.seed = seed;
+    options.iterations = 2000;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({60, 150, 300}, 1));
+    options.iterations = 300;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({3, 4, 5, 8, 13, 21}, 8));
+    options.tolerance_pr = 0.5;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({5, 30, 100}, 4));
+  }
+}
+
 TEST(Agreement, RansacFindsAsManyInliers) {
   for (const auto& [name, matches] :
        {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.5, 2), named_table("smooth", 500, 0.1, 3)}) {

@@ -2,12 +2,11 @@
 #include "tests/support/reference_groupers.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <random>
 #include <utility>
 
 namespace corral::reference {
@@ -131,7 +130,7 @@ Indices similarity_score(const CorrespondenceSet& matches, const SimilarityScore
 Indices nearest_neighbor_ratio(const CorrespondenceSet& matches, const NearestNeighborRatioOptions& options) {
   Indices selected;
   for (int i = 0; i < matches.size(); ++i) {
-    if (matches.second_feature_distance(i) == 0) continue;
+    if (matches.second_feature_distance(i) <= 0) continue;
     const double ratio = matches.feature_distance(i) / matches.second_feature_distance(i);
     if (options.ratio == RatioRule::Lowe ? ratio <= options.threshold : 1 - ratio >= options.threshold)
       selected.push_back(i);
@@ -208,8 +207,10 @@ Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions&
     high = high.cwiseMax(votes[i]);
   }
 
-  using Cell = std::array<int, 3>;  // std::map visits them by x, then y, then z
+  using Cell = std::array<double, 3>;  // whole numbers of any size; std::map visits them by x, then y, then z
   const bool box = options.cells == HoughCells::Box;
+  const double farthest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  const double rounding = std::max(1e-6 * matches.resolution, 64 * std::numeric_limits<double>::epsilon() * farthest);
   const double side = 5 * matches.resolution;
   std::map<Cell, double> weight;
   std::map<Cell, Indices> voters;
@@ -218,14 +219,14 @@ Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions&
       Cell cell{};
       double share = 1;
       for (int axis = 0; axis < 3; ++axis) {
-        int& index = cell[static_cast<std::size_t>(axis)];
+        double& index = cell[static_cast<std::size_t>(axis)];
         const double offset = vote(axis) - low(axis), extent = high(axis) - low(axis);
         if (box) {
-          index = extent > 0 ? std::min(options.bins - 1, static_cast<int>(offset / (extent / options.bins))) : 0;
+          index = extent > rounding ? std::min(options.bins - 1.0, std::floor(offset / (extent / options.bins))) : 0;
         } else {  // the two cells whose centres enclose the vote
           const double place = offset / side - 0.5;
           const bool upper = (corner >> axis) % 2 == 1;
-          index = static_cast<int>(std::floor(place)) + (upper ? 1 : 0);
+          index = std::floor(place) + (upper ? 1 : 0);
           share *= upper ? place - std::floor(place) : 1 - (place - std::floor(place));
         }
       }
@@ -304,39 +305,6 @@ Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInlier
     scores.push_back(voters > 0 ? static_cast<double>(votes) / voters : 0);
   }
   return rows_by_otsu(scores, options.otsu);
-}
-
-int ransac_count(const CorrespondenceSet& matches, int trials, double tolerance_pr, std::uint64_t seed) {
-  if (matches.size() < 3) return 0;
-  std::mt19937_64 engine(seed);
-  const auto draw = [&] { return static_cast<int>(engine() % static_cast<std::uint64_t>(matches.size())); };
-  int best = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    const int a = draw(), b = draw(), c = draw();
-    if (a == b || b == c || a == c) {  // draw again
-      --trial;
-      continue;
-    }
-    Eigen::Matrix3d source, target;  // columns are points
-    source << matches.source_points.row(a).transpose(), matches.source_points.row(b).transpose(),
-        matches.source_points.row(c).transpose();
-    target << matches.target_points.row(a).transpose(), matches.target_points.row(b).transpose(),
-        matches.target_points.row(c).transpose();
-    const Eigen::Vector3d source_mean = source.rowwise().mean(), target_mean = target.rowwise().mean();
-    const Eigen::Matrix3d h = (source.colwise() - source_mean) * (target.colwise() - target_mean).transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.singularValues()(1) <= 1e-6 * svd.singularValues()(0)) continue;
-    const double sign = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
-    const Eigen::Matrix3d turn = svd.matrixV() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixU().transpose();
-    int agreeing = 0;
-    for (int i = 0; i < matches.size(); ++i) {
-      const Eigen::Vector3d from_mean = matches.source_points.row(i).transpose() - source_mean;
-      const Eigen::Vector3d to_mean = matches.target_points.row(i).transpose() - target_mean;
-      if ((turn * from_mean - to_mean).norm() < tolerance_pr * matches.resolution) ++agreeing;
-    }
-    best = std::max(best, agreeing);
-  }
-  return best;
 }
 
 }  // namespace corral::reference

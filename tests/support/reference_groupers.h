@@ -8,6 +8,7 @@
 #include "grouping/hough_voting.h"
 #include "grouping/nearest_neighbor_ratio.h"
 #include "grouping/otsu.h"
+#include "grouping/ransac.h"
 #include "grouping/search_of_inliers.h"
 #include "grouping/similarity_score.h"
 #include "grouping/spectral.h"
@@ -25,6 +26,9 @@ Indices spectral(const CorrespondenceSet& matches, const SpectralOptions& option
 Indices geometric_consistency(const CorrespondenceSet& matches, const GeometricConsistencyOptions& options);
 Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options);
 Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options);
+
+/// Draws the triples of the stream that the options name, so that the rows compare.
+Indices ransac(const CorrespondenceSet& matches, const RansacOptions& options);
 
 /// Rows in agreement with the best of `trials` random triples. Its draws are its own, so only the count compares.
 int ransac_count(const CorrespondenceSet& matches, int trials, double tolerance_pr, std::uint64_t seed);
