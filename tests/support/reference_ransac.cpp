@@ -51,15 +51,15 @@ Indices draw_triple(RandomStream& random, int rows) {
 
 }  // namespace
 
-Indices ransac(const CorrespondenceSet& matches, const RansacOptions& options) {
+Selection ransac(const CorrespondenceSet& matches, const RansacOptions& options) {
+  if (matches.size() < 3) return {};
   Indices best;
-  if (matches.size() < 3) return best;
   RandomStream random(options.seed);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const Indices agreeing = rows_agreeing_with(matches, draw_triple(random, matches.size()), options.tolerance_pr);
     if (agreeing.size() > best.size()) best = agreeing;
   }
-  return best;
+  return {best};
 }
 
 int ransac_count(const CorrespondenceSet& matches, int trials, double tolerance_pr, std::uint64_t seed) {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -137,16 +136,6 @@ inline CorrespondenceSet with_moved_target(CorrespondenceSet table, const RigidT
   table.target_points = moved_from_target.apply(table.target_points);
   for (auto& frame : table.target_frames) frame = frame * moved_from_target.rotation.transpose();
   return table;
-}
-
-/// Shared rows over all rows of two selections; 1 if both are empty.
-inline double jaccard(const Indices& a, const Indices& b) {
-  const std::set<int> first(a.begin(), a.end());
-  std::set<int> both(first);
-  both.insert(b.begin(), b.end());
-  std::size_t shared = 0;
-  for (const int row : std::set<int>(b.begin(), b.end())) shared += first.count(row);
-  return both.empty() ? 1.0 : static_cast<double>(shared) / static_cast<double>(both.size());
 }
 
 /// The text of the InvalidInput that a call throws; empty if it throws none.
