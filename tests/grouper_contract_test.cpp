@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -29,9 +28,6 @@ class GrouperContract : public ::testing::TestWithParam<std::string> {
  protected:
   GroupingResult group(const CorrespondenceSet& matches, const OptionOverrides& overrides = {}) const {
     return find_grouper(GetParam()).configure(overrides).group(matches);
-  }
-  std::string refusal(const CorrespondenceSet& matches) const {
-    return refusal_of([&] { group(matches); });
   }
 };
 
@@ -88,56 +84,6 @@ TEST_P(GrouperContract, PoseIsARotation) {
     if (!pose) continue;
     EXPECT_TRUE(is_rotation(pose->rotation, 1e-9));
     EXPECT_TRUE(pose->translation.allFinite());
-  }
-}
-
-using Spoil = std::function<void(CorrespondenceSet&)>;
-
-TEST_P(GrouperContract, RaggedColumnsAreRefusedByName) {
-  const std::map<std::string, Spoil> spoils = {
-      {"target_points", [](auto& t) { t.target_points = t.target_points.topRows(4).eval(); }},
-      {"source_frames", [](auto& t) { t.source_frames.pop_back(); }},
-      {"target_frames", [](auto& t) { t.target_frames.pop_back(); }},
-      {"source_keypoints", [](auto& t) { t.source_keypoints.pop_back(); }},
-      {"target_keypoints", [](auto& t) { t.target_keypoints.push_back(0); }},
-      {"feature_distance", [](auto& t) { t.feature_distance = t.feature_distance.head(4).eval(); }},
-      {"second_feature_distance", [](auto& t) { t.second_feature_distance = Eigen::VectorXd::Ones(6); }},
-  };
-  for (const auto& [column, spoil] : spoils) {
-    CorrespondenceSet matches = full_table();
-    spoil(matches);
-    EXPECT_THAT(refusal(matches), HasSubstr(column));
-  }
-  CorrespondenceSet no_source = full_table();
-  no_source.source_points.resize(0, 3);
-  EXPECT_NE(refusal(no_source), "");
-}
-
-TEST_P(GrouperContract, NonFiniteColumnsAreRefusedByName) {
-  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    const std::map<std::string, Spoil> spoils = {
-        {"source_points", [=](auto& t) { t.source_points(3, 1) = bad; }},
-        {"target_points", [=](auto& t) { t.target_points(4, 2) = bad; }},
-        {"source_frames", [=](auto& t) { t.source_frames[2](0, 0) = bad; }},
-        {"target_frames", [=](auto& t) { t.target_frames[2](2, 1) = bad; }},
-        {"feature_distance", [=](auto& t) { t.feature_distance(0) = bad; }},
-        {"second_feature_distance", [=](auto& t) { t.second_feature_distance(4) = bad; }},
-        {"resolution", [=](auto& t) { t.resolution = bad; }},
-        {"source_centroid", [=](auto& t) { (*t.source_centroid)(1) = bad; }},
-    };
-    for (const auto& [column, spoil] : spoils) {
-      CorrespondenceSet matches = full_table();
-      spoil(matches);
-      EXPECT_THAT(refusal(matches), HasSubstr(column)) << bad;
-    }
-  }
-}
-
-TEST_P(GrouperContract, ResolutionMustBePositive) {
-  for (const double bad : {0.0, -1.0}) {
-    CorrespondenceSet matches = full_table();
-    matches.resolution = bad;
-    EXPECT_THAT(refusal(matches), HasSubstr("resolution"));
   }
 }
 
@@ -224,24 +170,6 @@ TEST_P(GrouperContract, OptionsRoundTrip) {
   }
   const CorrespondenceSet matches = synthetic(200, 0.2, 5).matches;
   EXPECT_EQ(configured.group(matches).selected, group(matches).selected);
-}
-
-TEST_P(GrouperContract, UnknownOptionIsRefusedWithTheKnownOnes) {
-  const Grouper& grouper = find_grouper(GetParam());
-  const std::string text = refusal_of([&] { grouper.configure({{"no_such_option", "1"}}); });
-  EXPECT_THAT(text, HasSubstr("no_such_option"));
-  EXPECT_THAT(text, HasSubstr(grouper.name));
-  for (const OptionValue& option : grouper.options) EXPECT_THAT(text, HasSubstr(option.name));
-}
-
-TEST_P(GrouperContract, TextThatIsNoValueIsRefusedForEveryOption) {
-  for (const OptionValue& option : find_grouper(GetParam()).options)
-    for (const std::string text : {"", "nan", "much", "-1x"})
-      EXPECT_THAT(refusal_of([&] {
-                    find_grouper(GetParam()).configure({{option.name, text}});
-                  }),
-                  HasSubstr(option.name))
-          << "'" << text << "'";
 }
 
 }  // namespace
