@@ -79,9 +79,8 @@ inline SyntheticProblem synthetic(int matches, double inlier_ratio, std::uint64_
 
 /// What real tables hold and smooth random ones do not: keypoints without a frame, several matches at one keypoint
 /// (also with one target), equal feature distances, ratios that sit on the limit, no second feature.
-inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint64_t seed) {
-  CorrespondenceSet table = synthetic(matches, inlier_ratio, seed).matches;
-  for (int row = 0; row < matches; ++row) {
+inline CorrespondenceSet made_harsh(CorrespondenceSet table) {
+  for (int row = 0; row < table.size(); ++row) {
     const auto i = static_cast<std::size_t>(row);
     if (row % 7 == 3) table.source_frames[i].setZero();
     if (row % 11 == 5) table.target_frames[i].setZero();
@@ -92,6 +91,10 @@ inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint
     if (row % 13 == 6) table.second_feature_distance(row) = 0;
   }
   return table;
+}
+
+inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint64_t seed) {
+  return made_harsh(synthetic(matches, inlier_ratio, seed).matches);
 }
 
 /// Low noise, four of five matches right.
@@ -120,22 +123,6 @@ inline std::vector<CorrespondenceSet> varied_tables() {
   for (auto& frame : frameless.source_frames) frame.setZero();
   tables.push_back(frameless);
   return tables;
-}
-
-/// All lengths, the ruler included, times a factor.
-inline CorrespondenceSet scaled(CorrespondenceSet table, double factor) {
-  table.source_points *= factor;
-  table.target_points *= factor;
-  table.resolution *= factor;
-  if (table.source_centroid) *table.source_centroid *= factor;
-  return table;
-}
-
-/// The target moved, its frames with it.
-inline CorrespondenceSet with_moved_target(CorrespondenceSet table, const RigidTransform& moved_from_target) {
-  table.target_points = moved_from_target.apply(table.target_points);
-  for (auto& frame : table.target_frames) frame = frame * moved_from_target.rotation.transpose();
-  return table;
 }
 
 /// The text of the InvalidInput that a call throws; empty if it throws none.
