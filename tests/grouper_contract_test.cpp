@@ -3,25 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "grouping/registry.h"
 #include "kernel/evaluation.h"
+#include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 
 namespace corral {
 namespace {
 
 using testing::easy_problem;
-using testing::full_table;
 using testing::harsh_table;
 using ::testing::HasSubstr;
 using testing::refusal_of;
 using testing::synthetic;
-using testing::varied_tables;
 
 class GrouperContract : public ::testing::TestWithParam<std::string> {
  protected:
@@ -55,46 +53,10 @@ TEST_P(GrouperContract, EmptyTableGivesEmptyAnswer) {
   EXPECT_FALSE(result.target_from_source.has_value());
 }
 
-TEST_P(GrouperContract, FewRowsDoNotThrow) {
-  for (int rows = 1; rows <= 3; ++rows) EXPECT_NO_THROW(group(full_table(rows))) << rows << " rows";
-}
-
-TEST_P(GrouperContract, RowsAscendAndAreInRange) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const Indices selected = group(matches).selected;
-    for (std::size_t i = 1; i < selected.size(); ++i) EXPECT_LT(selected[i - 1], selected[i]);
-    if (selected.empty()) continue;
-    EXPECT_GE(selected.front(), 0);
-    EXPECT_LT(selected.back(), matches.size());
-  }
-}
-
-TEST_P(GrouperContract, ScoresAreOnePerMatchOrNone) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const std::vector<double> scores = group(matches).scores;
-    EXPECT_THAT(scores.size(), ::testing::AnyOf(0U, static_cast<std::size_t>(matches.size())));
-    for (const double score : scores) EXPECT_TRUE(std::isfinite(score));
-  }
-}
-
-TEST_P(GrouperContract, PoseIsARotation) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const auto pose = group(matches).target_from_source;
-    if (!pose) continue;
-    EXPECT_TRUE(is_rotation(pose->rotation, 1e-9));
-    EXPECT_TRUE(pose->translation.allFinite());
-  }
-}
-
 TEST_P(GrouperContract, SameAnswerTwiceOnAHardProblem) {
   for (const CorrespondenceSet& matches : {synthetic(400, 0.05, 1).matches, harsh_table(300, 0.05, 2)}) {
-    const GroupingResult first = group(matches), second = group(matches);
-    EXPECT_EQ(first.selected, second.selected);
-    EXPECT_EQ(first.scores, second.scores);
-    ASSERT_EQ(first.target_from_source.has_value(), second.target_from_source.has_value());
-    if (!first.target_from_source) continue;
-    EXPECT_EQ(first.target_from_source->rotation, second.target_from_source->rotation);
-    EXPECT_EQ(first.target_from_source->translation, second.target_from_source->translation);
+    const GroupingResult first = group(matches);
+    testing::expect_same_result(group(matches), first);
   }
 }
 

@@ -108,23 +108,6 @@ inline SyntheticProblem easy_problem(std::uint64_t seed) {
   return make_synthetic_problem(options);
 }
 
-/// The tables on which a promise about the form of the answer is checked.
-inline std::vector<CorrespondenceSet> varied_tables() {
-  std::vector<CorrespondenceSet> tables;
-  for (int rows = 0; rows <= 6; ++rows) tables.push_back(full_table(rows));
-  for (const double ratio : {0.05, 0.5, 1.0}) tables.push_back(harsh_table(200, ratio, 3));
-  CorrespondenceSet one_place = full_table(8);  // eight copies of one match
-  for (int row = 1; row < 8; ++row) {
-    one_place.source_points.row(row) = one_place.source_points.row(0);
-    one_place.target_points.row(row) = one_place.target_points.row(0);
-  }
-  tables.push_back(one_place);
-  CorrespondenceSet frameless = full_table(8);
-  for (auto& frame : frameless.source_frames) frame.setZero();
-  tables.push_back(frameless);
-  return tables;
-}
-
 /// The text of the InvalidInput that a call throws; empty if it throws none.
 template <class Call>
 std::string refusal_of(Call&& call) {
