@@ -10,6 +10,8 @@
 namespace corral {
 namespace {
 
+constexpr double kTie = 1e-12;  // variances that differ by less differ by rounding
+
 /// The cut of `count` ordered classes that maximises n1 n2 (m1 - m2)^2: the last class of the lower part, or -1 if no
 /// cut has two non-empty sides. weight(i) and value(i) describe class i.
 template <class Weight, class Value>
@@ -25,7 +27,7 @@ int best_cut(int count, Weight weight, Value value) {
     if (!(weight(i) > 0) || !(upper_weight > 0)) continue;  // an empty class ends no part: the cut below it is the same
     const double gap = lower / lower_weight - (total - lower) / upper_weight;
     const double variance = lower_weight * upper_weight * gap * gap;
-    if (variance > best_variance) best = i, best_variance = variance;
+    if (variance > best_variance * (1 + kTie)) best = i, best_variance = variance;
   }
   return best;
 }

@@ -20,7 +20,7 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 ///
 ///   maximise  n1 n2 (m1 - m2)^2    over all ways to cut the sorted scores in two (sizes n, means m)
 ///
-/// exact     the threshold is the midpoint of the best gap (ties: the lowest gap); accepts score >= threshold.
+/// exact     the threshold is the midpoint of the best gap (ties, to 1e-12: the lowest gap); accepts score >= threshold.
 /// bins100   the threshold is the lower edge of the last bin of the lower class, so that bin is accepted too.
 /// covis     the threshold is index / (bins - 1), index the last bin of the lower class; accepts score > threshold.
 ///

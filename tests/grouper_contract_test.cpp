@@ -3,35 +3,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "grouping/registry.h"
 #include "kernel/evaluation.h"
+#include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 
 namespace corral {
 namespace {
 
 using testing::easy_problem;
-using testing::full_table;
 using testing::harsh_table;
 using ::testing::HasSubstr;
 using testing::refusal_of;
 using testing::synthetic;
-using testing::varied_tables;
 
 class GrouperContract : public ::testing::TestWithParam<std::string> {
  protected:
   GroupingResult group(const CorrespondenceSet& matches, const OptionOverrides& overrides = {}) const {
     return find_grouper(GetParam()).configure(overrides).group(matches);
-  }
-  std::string refusal(const CorrespondenceSet& matches) const {
-    return refusal_of([&] { group(matches); });
   }
 };
 
@@ -60,125 +53,10 @@ TEST_P(GrouperContract, EmptyTableGivesEmptyAnswer) {
   EXPECT_FALSE(result.target_from_source.has_value());
 }
 
-TEST_P(GrouperContract, FewRowsDoNotThrow) {
-  for (int rows = 1; rows <= 3; ++rows) EXPECT_NO_THROW(group(full_table(rows))) << rows << " rows";
-}
-
-TEST_P(GrouperContract, RowsAscendAndAreInRange) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const Indices selected = group(matches).selected;
-    for (std::size_t i = 1; i < selected.size(); ++i) EXPECT_LT(selected[i - 1], selected[i]);
-    if (selected.empty()) continue;
-    EXPECT_GE(selected.front(), 0);
-    EXPECT_LT(selected.back(), matches.size());
-  }
-}
-
-TEST_P(GrouperContract, ScoresAreOnePerMatchOrNone) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const std::vector<double> scores = group(matches).scores;
-    EXPECT_THAT(scores.size(), ::testing::AnyOf(0U, static_cast<std::size_t>(matches.size())));
-    for (const double score : scores) EXPECT_TRUE(std::isfinite(score));
-  }
-}
-
-TEST_P(GrouperContract, PoseIsARotation) {
-  for (const CorrespondenceSet& matches : varied_tables()) {
-    const auto pose = group(matches).target_from_source;
-    if (!pose) continue;
-    EXPECT_TRUE(is_rotation(pose->rotation, 1e-9));
-    EXPECT_TRUE(pose->translation.allFinite());
-  }
-}
-
-using Spoil = std::function<void(CorrespondenceSet&)>;
-
-TEST_P(GrouperContract, RaggedColumnsAreRefusedByName) {
-  const std::map<std::string, Spoil> spoils = {
-      {"target_points", [](auto& t) { t.target_points = t.target_points.topRows(4).eval(); }},
-      {"source_frames", [](auto& t) { t.source_frames.pop_back(); }},
-      {"target_frames", [](auto& t) { t.target_frames.pop_back(); }},
-      {"source_keypoints", [](auto& t) { t.source_keypoints.pop_back(); }},
-      {"target_keypoints", [](auto& t) { t.target_keypoints.push_back(0); }},
-      {"feature_distance", [](auto& t) { t.feature_distance = t.feature_distance.head(4).eval(); }},
-      {"second_feature_distance", [](auto& t) { t.second_feature_distance = Eigen::VectorXd::Ones(6); }},
-  };
-  for (const auto& [column, spoil] : spoils) {
-    CorrespondenceSet matches = full_table();
-    spoil(matches);
-    EXPECT_THAT(refusal(matches), HasSubstr(column));
-  }
-  CorrespondenceSet no_source = full_table();
-  no_source.source_points.resize(0, 3);
-  EXPECT_NE(refusal(no_source), "");
-}
-
-TEST_P(GrouperContract, NonFiniteColumnsAreRefusedByName) {
-  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    const std::map<std::string, Spoil> spoils = {
-        {"source_points", [=](auto& t) { t.source_points(3, 1) = bad; }},
-        {"target_points", [=](auto& t) { t.target_points(4, 2) = bad; }},
-        {"source_frames", [=](auto& t) { t.source_frames[2](0, 0) = bad; }},
-        {"target_frames", [=](auto& t) { t.target_frames[2](2, 1) = bad; }},
-        {"feature_distance", [=](auto& t) { t.feature_distance(0) = bad; }},
-        {"second_feature_distance", [=](auto& t) { t.second_feature_distance(4) = bad; }},
-        {"resolution", [=](auto& t) { t.resolution = bad; }},
-        {"source_centroid", [=](auto& t) { (*t.source_centroid)(1) = bad; }},
-    };
-    for (const auto& [column, spoil] : spoils) {
-      CorrespondenceSet matches = full_table();
-      spoil(matches);
-      EXPECT_THAT(refusal(matches), HasSubstr(column)) << bad;
-    }
-  }
-}
-
-TEST_P(GrouperContract, ResolutionMustBePositive) {
-  for (const double bad : {0.0, -1.0}) {
-    CorrespondenceSet matches = full_table();
-    matches.resolution = bad;
-    EXPECT_THAT(refusal(matches), HasSubstr("resolution"));
-  }
-}
-
 TEST_P(GrouperContract, SameAnswerTwiceOnAHardProblem) {
   for (const CorrespondenceSet& matches : {synthetic(400, 0.05, 1).matches, harsh_table(300, 0.05, 2)}) {
-    const GroupingResult first = group(matches), second = group(matches);
-    EXPECT_EQ(first.selected, second.selected);
-    EXPECT_EQ(first.scores, second.scores);
-    ASSERT_EQ(first.target_from_source.has_value(), second.target_from_source.has_value());
-    if (!first.target_from_source) continue;
-    EXPECT_EQ(first.target_from_source->rotation, second.target_from_source->rotation);
-    EXPECT_EQ(first.target_from_source->translation, second.target_from_source->translation);
-  }
-}
-
-TEST_P(GrouperContract, UnitOfLengthDoesNotMatter) {
-  for (const CorrespondenceSet& matches : {synthetic(300, 0.2, 1).matches, harsh_table(300, 0.1, 2)})
-    for (const double factor : {1024.0, 1.0 / 4096})  // powers of two: exact in floating point
-      EXPECT_EQ(group(testing::scaled(matches, factor)).selected, group(matches).selected);
-}
-
-TEST_P(GrouperContract, TranslationOfTheTargetDoesNotMatter) {
-  for (CorrespondenceSet matches : {synthetic(300, 0.3, 1).matches, harsh_table(300, 0.3, 2)}) {
-    // Whole multiples of 2^-20, so that the sums are exact.
-    matches.target_points = (matches.target_points * 1048576).array().round().matrix() / 1048576;
-    RigidTransform shift;
-    shift.translation = Eigen::Vector3d(512, -64.5, 1000.25);
-    EXPECT_EQ(group(testing::with_moved_target(matches, shift)).selected, group(matches).selected);
-  }
-}
-
-TEST_P(GrouperContract, RotationOfTheTargetDoesNotMatter) {
-  RigidTransform motion;
-  motion.translation = Eigen::Vector3d(10, -300, 42);
-  if (GetParam() == "hough")  // its cells are parallel to the axes: only turns that map axes to axes leave them whole
-    motion.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  else
-    motion.rotation = Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const CorrespondenceSet matches = synthetic(300, 0.3, seed).matches;
-    EXPECT_EQ(group(testing::with_moved_target(matches, motion)).selected, group(matches).selected);
+    const GroupingResult first = group(matches);
+    testing::expect_same_result(group(matches), first);
   }
 }
 
@@ -224,24 +102,6 @@ TEST_P(GrouperContract, OptionsRoundTrip) {
   }
   const CorrespondenceSet matches = synthetic(200, 0.2, 5).matches;
   EXPECT_EQ(configured.group(matches).selected, group(matches).selected);
-}
-
-TEST_P(GrouperContract, UnknownOptionIsRefusedWithTheKnownOnes) {
-  const Grouper& grouper = find_grouper(GetParam());
-  const std::string text = refusal_of([&] { grouper.configure({{"no_such_option", "1"}}); });
-  EXPECT_THAT(text, HasSubstr("no_such_option"));
-  EXPECT_THAT(text, HasSubstr(grouper.name));
-  for (const OptionValue& option : grouper.options) EXPECT_THAT(text, HasSubstr(option.name));
-}
-
-TEST_P(GrouperContract, TextThatIsNoValueIsRefusedForEveryOption) {
-  for (const OptionValue& option : find_grouper(GetParam()).options)
-    for (const std::string text : {"", "nan", "much", "-1x"})
-      EXPECT_THAT(refusal_of([&] {
-                    find_grouper(GetParam()).configure({{option.name, text}});
-                  }),
-                  HasSubstr(option.name))
-          << "'" << text << "'";
 }
 
 }  // namespace

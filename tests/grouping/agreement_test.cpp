@@ -9,13 +9,13 @@
 
 #include "grouping/ransac.h"
 #include "tests/support/reference_groupers.h"
+#include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 
 namespace corral {
 namespace {
 
 using testing::harsh_table;
-using testing::jaccard;
 using testing::synthetic;
 
 struct NamedTable {
@@ -41,14 +41,14 @@ std::vector<NamedTable> tables(const std::vector<int>& sizes, std::uint64_t seed
 
 template <class Options>
 void expect_identical(GroupingResult (*group)(const CorrespondenceSet&, const Options&),
-                      Indices (*reference)(const CorrespondenceSet&, const Options&), const Options& options,
-                      const std::vector<NamedTable>& on) {
+                      reference::Selection (*reference)(const CorrespondenceSet&, const Options&),
+                      const Options& options, const std::vector<NamedTable>& on) {
   std::size_t selected = 0;
   for (const auto& [name, matches] : on) {
     SCOPED_TRACE(name);
-    const Indices expected = reference(matches, options);
-    EXPECT_EQ(group(matches, options).selected, expected);
-    selected += expected.size();
+    const reference::Selection expected = reference(matches, options);
+    testing::expect_reference(group(matches, options), expected);
+    selected += expected.rows.size();
   }
   EXPECT_GT(selected, 0U) << "nothing was selected on any table: nothing was compared";
 }
@@ -127,45 +127,61 @@ TEST(Agreement, SearchOfInliersOnThousandRows) {
   expect_identical(group_by_search_of_inliers, reference::search_of_inliers, {}, tables({1000}, 1));
 }
 
-/// The order in which equal entries fall can move a few rows, so near-identity is asked for, and identity for most.
-void expect_same_spectral(const SpectralOptions& options, const std::vector<NamedTable>& on) {
-  std::size_t identical = 0;
-  for (const auto& [name, matches] : on) {
-    SCOPED_TRACE(name);
-    const Indices found = group_by_spectral(matches, options).selected;
-    const Indices expected = reference::spectral(matches, options);
-    EXPECT_GE(jaccard(found, expected), 0.98) << ::testing::PrintToString(found) << "\n"
-                                              << ::testing::PrintToString(expected);
-    EXPECT_FALSE(expected.empty());
-    if (found == expected) ++identical;
-  }
-  EXPECT_GE(identical * 10, on.size() * 9);
+TEST(Agreement, SpectralIterative) {
+  expect_identical(group_by_spectral, reference::spectral, {}, tables({60, 120}, 3));
 }
-
-TEST(Agreement, SpectralIterative) { expect_same_spectral({}, tables({60, 120}, 3)); }
 
 TEST(Agreement, SpectralIterativeStricter) {
   SpectralOptions options;
   options.similarity = 0.9;
-  expect_same_spectral(options, tables({60, 250}, 2));
+  expect_identical(group_by_spectral, reference::spectral, options, tables({60, 250}, 2));
 }
 
 TEST(Agreement, SpectralOnce) {
   SpectralOptions options;
   options.once = true;
-  expect_same_spectral(options, tables({60, 250}, 2));
+  expect_identical(group_by_spectral, reference::spectral, options, tables({60, 250}, 2));
 }
 
 TEST(Agreement, SpectralWeighted) {
   SpectralOptions options;
   options.weighted = true;
-  expect_same_spectral(options, tables({60, 120}, 3));
+  expect_identical(group_by_spectral, reference::spectral, options, tables({60, 120}, 3));
   options.once = true;
-  expect_same_spectral(options, tables({250}, 1));
+  expect_identical(group_by_spectral, reference::spectral, options, tables({250}, 1));
 }
 
 TEST(Agreement, SpectralOnLargerTables) {
-  expect_same_spectral({}, {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.2, 1)});
+  expect_identical(group_by_spectral, reference::spectral, {},
+                   {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.2, 1)});
+}
+
+/// The reference draws the same triples, so that the first of the best must be the same one.
+TEST(Agreement, RansacOnTheSameTriples) {
+  for (const std::uint64_t seed : {1, 2, 77}) {
+    SCOPED_TRACE("seed of the triples " + std::to_string(seed));
+    RansacOptions options;
+    options.seed = seed;
+    options.iterations = 2000;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({60, 150, 300}, 1));
+    options.iterations = 300;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({3, 4, 5, 8, 13, 21}, 8));
+    options.tolerance_pr = 0.5;
+    expect_identical(group_by_ransac, reference::ransac, options, tables({5, 30, 100}, 4));
+  }
+}
+
+/// The areas of the triangles straddle the smallest usable one, on the two sides independently.
+TEST(Agreement, RansacOnSmallTriangles) {
+  RansacOptions options;
+  options.iterations = 300;
+  options.tolerance_pr = 0.005;
+  std::vector<NamedTable> on = tables({10, 50}, 20);
+  for (auto& table : on) {
+    table.matches.resolution = 1000;  // the side of the cube is 0.2 pr
+    table.matches.target_points.col(2) *= 0.5;
+  }
+  expect_identical(group_by_ransac, reference::ransac, options, on);
 }
 
 TEST(Agreement, RansacFindsAsManyInliers) {

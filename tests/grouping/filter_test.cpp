@@ -11,6 +11,7 @@
 #include "grouping/filter_loops.h"
 #include "kernel/random.h"
 #include "tests/support/execution.h"
+#include "tests/support/table_changes.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -48,6 +48,8 @@ TEST(OtsuExact, WeighsTheClassesByTheirSizes) {
 TEST(OtsuExact, TieGoesToTheLowestGap) {
   // Cut 0 | 1: 1 * 2 * (0 - 1.5)^2 = 4.5. Cut 1 | 2: 2 * 1 * (0.5 - 2)^2 = 4.5.
   EXPECT_THAT(select_by_otsu({0, 1, 2}, OtsuRule::Exact), ElementsAre(1, 2));
+  // Cut 0 | 1: 1 * 3 * (0 - 4/3)^2 = 16/3. Cut 1 | 2: 3 * 1 * (2/3 - 2)^2 = 16/3: in thirds, only rounding differs.
+  EXPECT_THAT(select_by_otsu({0, 1, 1, 2}, OtsuRule::Exact), ElementsAre(1, 2, 3));
 }
 
 TEST(OtsuExact, EqualScoresStayTogether) {

@@ -74,15 +74,18 @@ TEST(Ransac, TriplesWithoutAreaGiveNothing) {
 
 TEST(Ransac, SmallestAreaIsInSquaredPr) {
   // Right triangles with legs a: area a^2 / 2 against 0.001 pr^2.
+  constexpr double kBelow = 0.0447, kAbove = 0.0448;  // 0.000999 and 0.001004
   for (const double resolution : {1.0, 0.01, 50.0}) {
-    const auto triangle = [&](double leg) {
-      const double a = leg * resolution;
-      CorrespondenceSet matches = table_of_points({{0, 0, 0}, {a, 0, 0}, {0, a, 0}}, {{0, 0, 0}, {a, 0, 0}, {0, a, 0}});
+    const auto answer = [&](double source_leg, double target_leg) {
+      const double a = source_leg * resolution, b = target_leg * resolution;
+      CorrespondenceSet matches = table_of_points({{0, 0, 0}, {a, 0, 0}, {0, a, 0}}, {{0, 0, 0}, {b, 0, 0}, {0, b, 0}});
       matches.resolution = resolution;
-      return matches;
+      return group_by_ransac(matches, options_of(5));
     };
-    expect_nothing(group_by_ransac(triangle(0.0447), options_of(5)));                              // 0.000999
-    EXPECT_THAT(group_by_ransac(triangle(0.0448), options_of(5)).selected, ElementsAre(0, 1, 2));  // 0.001004
+    expect_nothing(answer(kBelow, kBelow));
+    expect_nothing(answer(kBelow, kAbove));
+    expect_nothing(answer(kAbove, kBelow));
+    EXPECT_THAT(answer(kAbove, kAbove).selected, ElementsAre(0, 1, 2));
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "kernel/error.h"
 #include "kernel/random.h"
+#include "tests/support/table_changes.h"
 #include "tests/support/tables.h"
 
 namespace corral {

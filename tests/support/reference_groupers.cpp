@@ -2,12 +2,13 @@
 #include "tests/support/reference_groupers.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <random>
+#include <numeric>
+#include <set>
 #include <utility>
 
 namespace corral::reference {
@@ -36,6 +37,12 @@ bool has_frames(const CorrespondenceSet& matches, int row) {
   return has_frame(matches.source_frames[i]) && has_frame(matches.target_frames[i]);
 }
 
+Indices all_rows(int count) {
+  Indices rows(static_cast<std::size_t>(count));
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
 /// Rows 0 .. count-1 by ascending key, ties by row.
 Indices rows_by(const std::vector<double>& keys) {
   std::vector<std::pair<double, int>> pairs;
@@ -46,22 +53,18 @@ Indices rows_by(const std::vector<double>& keys) {
   return rows;
 }
 
-/// n1 n2 (m1 - m2)^2 with the first `cut` of the ascending values as the lower class.
-double between_class_variance(const std::vector<double>& values, std::size_t cut) {
-  double low = 0, high = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) (i < cut ? low : high) += values[i];
-  const auto n1 = static_cast<double>(cut), n2 = static_cast<double>(values.size() - cut);
-  return n1 * n2 * (low / n1 - high / n2) * (low / n1 - high / n2);
+bool has_equals(const std::vector<double>& keys) {
+  return std::set<double>(keys.begin(), keys.end()).size() < keys.size();
 }
 
-/// Size of the lower class at the best gap of the ascending values (ties: the lowest); 0 if all are equal.
-std::size_t best_cut(const std::vector<double>& values) {
-  std::size_t best = 0;
-  for (std::size_t cut = 1; cut < values.size(); ++cut)
-    if (values[cut - 1] < values[cut] &&
-        (best == 0 || between_class_variance(values, cut) > between_class_variance(values, best)))
-      best = cut;
-  return best;
+/// The `count` rows with the smallest keys; notes whether one of equals was left out.
+Indices first_rows(const std::vector<double>& keys, int count, bool& tied) {
+  Indices rows = rows_by(keys);
+  const auto end = static_cast<std::size_t>(count);
+  if (end < rows.size())
+    tied = tied || keys[static_cast<std::size_t>(rows[end - 1])] == keys[static_cast<std::size_t>(rows[end])];
+  rows.resize(std::min(end, rows.size()));
+  return rows;
 }
 
 /// The part of the graph that `start` belongs to, ascending.
@@ -74,9 +77,15 @@ Indices connected_part(const Eigen::MatrixXd& matrix, int start) {
   return part;
 }
 
+/// The principal eigenvector, and whether two parts have the same eigenvalue.
+struct Principal {
+  Eigen::VectorXd vector;
+  bool tied = false;
+};
+
 /// Dense solution, part by part, so that equal eigenvalues of two parts do not mix their vectors.
-Eigen::VectorXd principal_vector(const Eigen::MatrixXd& matrix) {
-  Eigen::VectorXd best = Eigen::VectorXd::Zero(matrix.rows());
+Principal principal_vector(const Eigen::MatrixXd& matrix) {
+  Principal best{Eigen::VectorXd::Zero(matrix.rows())};
   std::vector<bool> seen(static_cast<std::size_t>(matrix.rows()), false);
   double best_value = 0;
   for (int start = 0; start < matrix.rows(); ++start) {
@@ -85,61 +94,26 @@ Eigen::VectorXd principal_vector(const Eigen::MatrixXd& matrix) {
     for (const int row : part) seen[static_cast<std::size_t>(row)] = true;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix(part, part));
     const double value = solver.eigenvalues()(solver.eigenvalues().size() - 1);
-    if (!(value > best_value * (1 + 1e-9))) continue;
-    best_value = value;
-    best.setZero();
-    best(part) = solver.eigenvectors().rightCols<1>().cwiseAbs();
+    if (value > best_value * (1 + 1e-9)) {
+      best = {Eigen::VectorXd::Zero(matrix.rows())};
+      best.vector(part) = solver.eigenvectors().rightCols<1>().cwiseAbs();
+      best_value = value;
+    } else if (value > best_value * (1 - 1e-9)) {
+      best.tied = true;
+    }
   }
   return best;
 }
 
+/// Compatible, and alike to all others alive: whichever is accepted first, both are in the end.
+bool are_twins(const Eigen::MatrixXd& graph, const Indices& alive, int i, int j) {
+  return graph(i, j) > 0 &&
+         std::all_of(alive.begin(), alive.end(), [&](int k) { return k == i || k == j || graph(i, k) == graph(j, k); });
+}
+
 }  // namespace
 
-Indices rows_by_otsu(const std::vector<double>& scores, OtsuRule rule) {
-  const auto count = static_cast<int>(scores.size());
-  if (count == 0) return {};
-  const double smallest = *std::min_element(scores.begin(), scores.end());
-  const double largest = *std::max_element(scores.begin(), scores.end());
-  const int bins = rule == OtsuRule::Bins100 ? 100 : static_cast<int>(std::lround(std::sqrt(count)));
-  std::vector<double> values = scores;  // what is cut in two: the scores, or the numbers of their bins
-  for (double& value : values) {
-    if (rule == OtsuRule::Exact || smallest == largest) continue;
-    const double place = rule == OtsuRule::Bins100 ? (value - smallest) / (largest - smallest) : value;
-    value = std::min(std::max(std::floor(place * bins), 0.0), bins - 1.0);
-  }
-  std::vector<double> ascending = values;
-  std::sort(ascending.begin(), ascending.end());
-  const std::size_t cut = best_cut(ascending);
-  Indices selected;
-  for (int row = 0; row < count; ++row) {
-    const auto i = static_cast<std::size_t>(row);
-    bool keep = true;
-    if (cut > 0 && rule == OtsuRule::Exact) keep = scores[i] >= (ascending[cut - 1] + ascending[cut]) / 2;
-    if (cut > 0 && rule == OtsuRule::Bins100) keep = values[i] >= ascending[cut - 1];
-    if (cut > 0 && rule == OtsuRule::Covis) keep = scores[i] > ascending[cut - 1] / (bins - 1);
-    if (keep) selected.push_back(row);
-  }
-  return selected;
-}
-
-Indices similarity_score(const CorrespondenceSet& matches, const SimilarityScoreOptions& options) {
-  std::vector<double> scores;
-  for (int i = 0; i < matches.size(); ++i) scores.push_back(1 - matches.feature_distance(i));
-  return rows_by_otsu(scores, options.otsu);
-}
-
-Indices nearest_neighbor_ratio(const CorrespondenceSet& matches, const NearestNeighborRatioOptions& options) {
-  Indices selected;
-  for (int i = 0; i < matches.size(); ++i) {
-    if (matches.second_feature_distance(i) == 0) continue;
-    const double ratio = matches.feature_distance(i) / matches.second_feature_distance(i);
-    if (options.ratio == RatioRule::Lowe ? ratio <= options.threshold : 1 - ratio >= options.threshold)
-      selected.push_back(i);
-  }
-  return selected;
-}
-
-Indices spectral(const CorrespondenceSet& matches, const SpectralOptions& options) {
+Selection spectral(const CorrespondenceSet& matches, const SpectralOptions& options) {
   const int count = matches.size();
   Eigen::MatrixXd graph = Eigen::MatrixXd::Identity(count, count);
   for (int i = 0; i < count; ++i)
@@ -148,26 +122,32 @@ Indices spectral(const CorrespondenceSet& matches, const SpectralOptions& option
         graph(i, j) = options.weighted ? rigidity(matches, i, j) : 1;
   if (graph.sum() == count) return {};  // nobody is compatible with anybody
 
-  Indices alive, selected;
-  for (int i = 0; i < count; ++i) alive.push_back(i);
-  const Eigen::VectorXd whole = options.once ? principal_vector(graph) : Eigen::VectorXd();
+  Selection selection;
+  Indices alive = all_rows(count);
+  const Principal whole = options.once ? principal_vector(graph) : Principal();
   while (!alive.empty()) {
-    const Eigen::VectorXd x = options.once ? Eigen::VectorXd(whole(alive)) : principal_vector(graph(alive, alive));
+    const Principal principal =
+        options.once ? Principal{whole.vector(alive), whole.tied} : principal_vector(graph(alive, alive));
+    const Eigen::VectorXd& x = principal.vector;
     if (x.maxCoeff() <= 1e-9) break;
-    Eigen::Index best = 0;
-    while (x(best) < x.maxCoeff() - 1e-9) ++best;
-    const int accepted = alive[static_cast<std::size_t>(best)];
-    selected.push_back(accepted);
+    Indices largest;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (x(i) >= x.maxCoeff() - 1e-9) largest.push_back(alive[static_cast<std::size_t>(i)]);
+    const int accepted = largest.front();
+    selection.rows.push_back(accepted);
+    selection.tied = selection.tied || principal.tied;
+    for (const int other : largest)
+      if (other != accepted && !are_twins(graph, alive, accepted, other)) selection.tied = true;
     Indices rest;
     for (const int j : alive)
       if (j != accepted && graph(accepted, j) > 0) rest.push_back(j);
     alive = rest;
   }
-  std::sort(selected.begin(), selected.end());
-  return selected;
+  std::sort(selection.rows.begin(), selection.rows.end());
+  return selection;
 }
 
-Indices geometric_consistency(const CorrespondenceSet& matches, const GeometricConsistencyOptions& options) {
+Selection geometric_consistency(const CorrespondenceSet& matches, const GeometricConsistencyOptions& options) {
   const auto agree = [&](int i, int j) {
     return std::abs(distance(matches.source_points, i, j) - distance(matches.target_points, i, j)) <
            options.tolerance_pr * matches.resolution;
@@ -177,25 +157,28 @@ Indices geometric_consistency(const CorrespondenceSet& matches, const GeometricC
   for (int i = 0; i < matches.size() && !star; ++i) keys[static_cast<std::size_t>(i)] = matches.feature_distance(i);
   const Indices order = rows_by(keys);
   std::vector<bool> taken(keys.size(), false);
-  Indices best;
+  Selection best;
   for (const int seed : order) {
     if (taken[static_cast<std::size_t>(seed)]) continue;
     Indices cluster{seed};
     for (const int j : order) {
       if (j == seed || taken[static_cast<std::size_t>(j)]) continue;
-      bool fits = true;
-      for (const int member : cluster) fits = fits && agree(star ? seed : member, j);
-      if (fits) cluster.push_back(j);
+      const auto agrees = [&](int member) { return agree(member, j); };
+      if (star ? agrees(seed) : std::all_of(cluster.begin(), cluster.end(), agrees)) cluster.push_back(j);
     }
     if (!star && cluster.size() <= 3) continue;
     for (const int member : cluster) taken[static_cast<std::size_t>(member)] = !star;
-    if (cluster.size() > best.size()) best = cluster;
+    std::sort(cluster.begin(), cluster.end());
+    if (cluster.size() > best.rows.size())
+      best = {cluster};
+    else if (cluster.size() == best.rows.size() && cluster != best.rows)
+      best.tied = true;
   }
-  std::sort(best.begin(), best.end());
+  if (!star) best.tied = has_equals(keys);  // the order of the seeds settles everything else
   return best;
 }
 
-Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options) {
+Selection hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options) {
   const Eigen::Vector3d centroid = matches.source_centroid_or_mean();
   std::map<int, Eigen::Vector3d> votes;
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
@@ -208,8 +191,10 @@ Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions&
     high = high.cwiseMax(votes[i]);
   }
 
-  using Cell = std::array<int, 3>;  // std::map visits them by x, then y, then z
+  using Cell = std::array<double, 3>;  // whole numbers of any size; std::map visits them by x, then y, then z
   const bool box = options.cells == HoughCells::Box;
+  const double farthest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  const double rounding = std::max(1e-6 * matches.resolution, 64 * std::numeric_limits<double>::epsilon() * farthest);
   const double side = 5 * matches.resolution;
   std::map<Cell, double> weight;
   std::map<Cell, Indices> voters;
@@ -218,14 +203,14 @@ Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions&
       Cell cell{};
       double share = 1;
       for (int axis = 0; axis < 3; ++axis) {
-        int& index = cell[static_cast<std::size_t>(axis)];
+        double& index = cell[static_cast<std::size_t>(axis)];
         const double offset = vote(axis) - low(axis), extent = high(axis) - low(axis);
         if (box) {
-          index = extent > 0 ? std::min(options.bins - 1, static_cast<int>(offset / (extent / options.bins))) : 0;
+          index = extent > rounding ? std::min(options.bins - 1.0, std::floor(offset / (extent / options.bins))) : 0;
         } else {  // the two cells whose centres enclose the vote
           const double place = offset / side - 0.5;
           const bool upper = (corner >> axis) % 2 == 1;
-          index = static_cast<int>(std::floor(place)) + (upper ? 1 : 0);
+          index = std::floor(place) + (upper ? 1 : 0);
           share *= upper ? place - std::floor(place) : 1 - (place - std::floor(place));
         }
       }
@@ -237,21 +222,23 @@ Indices hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions&
   Cell peak{};
   for (const auto& [cell, sum] : weight)
     if (sum > fullest) fullest = sum, peak = cell;
-  Indices selected = voters[peak];
+  Selection selection{voters[peak]};
+  for (const auto& [cell, sum] : weight)
+    if (sum > fullest * (1 - 1e-9) && voters[cell] != voters[peak]) selection.tied = true;
   for (std::size_t axis = 0; axis < 3 && box; ++axis) {
     for (const int step : {-1, 1}) {
       Cell neighbour = peak;
       neighbour[axis] += step;
-      selected.insert(selected.end(), voters[neighbour].begin(), voters[neighbour].end());
+      selection.rows.insert(selection.rows.end(), voters[neighbour].begin(), voters[neighbour].end());
     }
   }
-  std::sort(selected.begin(), selected.end());
-  return selected;
+  std::sort(selection.rows.begin(), selection.rows.end());
+  return selection;
 }
 
-Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options) {
+Selection search_of_inliers(const CorrespondenceSet& matches, const SearchOfInliersOptions& options) {
   const int count = matches.size();
-  if (count <= 2) return count == 2 ? Indices{0, 1} : Indices(static_cast<std::size_t>(count), 0);
+  if (count <= 2) return {all_rows(count)};
   const bool covis = options.form == VotingForm::Covis;
   const auto rigid = [&](int i, int j) {
     const double r = rigidity(matches, i, j);
@@ -266,15 +253,14 @@ Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInlier
     in_ratio_set.push_back(d2 > 0 && (covis ? d1 / d2 < 0.8 : d1 / d2 <= 0.8));
   }
 
+  bool tied = false;
   std::vector<int> local_voters, local_votes;
   std::vector<double> global_order;  // ascending: the best voter first
   for (int c = 0; c < count; ++c) {
     std::vector<double> far;
     for (int j = 0; j < count; ++j) far.push_back(j == c ? INFINITY : distance(matches.source_points, c, j));
-    Indices near = rows_by(far);
-    near.resize(static_cast<std::size_t>(std::min(options.voters, count - 1)));
     int voters = 0, votes = 0;
-    for (const int j : near) {
+    for (const int j : first_rows(far, std::min(options.voters, count - 1), tied)) {
       if (!in_ratio_set[static_cast<std::size_t>(j)]) continue;
       ++voters;
       if (rigid(c, j)) ++votes;
@@ -284,8 +270,7 @@ Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInlier
     const double local_score = voters > 0 ? static_cast<double>(votes) / voters : 0;
     global_order.push_back(covis ? -local_score : -distinctiveness[static_cast<std::size_t>(c)]);
   }
-  Indices best = rows_by(global_order);
-  best.resize(static_cast<std::size_t>(std::min(options.voters, count)));
+  const Indices best = first_rows(global_order, options.voters, tied);
 
   std::vector<double> scores;
   for (int c = 0; c < count; ++c) {
@@ -303,40 +288,7 @@ Indices search_of_inliers(const CorrespondenceSet& matches, const SearchOfInlier
     }
     scores.push_back(voters > 0 ? static_cast<double>(votes) / voters : 0);
   }
-  return rows_by_otsu(scores, options.otsu);
-}
-
-int ransac_count(const CorrespondenceSet& matches, int trials, double tolerance_pr, std::uint64_t seed) {
-  if (matches.size() < 3) return 0;
-  std::mt19937_64 engine(seed);
-  const auto draw = [&] { return static_cast<int>(engine() % static_cast<std::uint64_t>(matches.size())); };
-  int best = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    const int a = draw(), b = draw(), c = draw();
-    if (a == b || b == c || a == c) {  // draw again
-      --trial;
-      continue;
-    }
-    Eigen::Matrix3d source, target;  // columns are points
-    source << matches.source_points.row(a).transpose(), matches.source_points.row(b).transpose(),
-        matches.source_points.row(c).transpose();
-    target << matches.target_points.row(a).transpose(), matches.target_points.row(b).transpose(),
-        matches.target_points.row(c).transpose();
-    const Eigen::Vector3d source_mean = source.rowwise().mean(), target_mean = target.rowwise().mean();
-    const Eigen::Matrix3d h = (source.colwise() - source_mean) * (target.colwise() - target_mean).transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    if (svd.singularValues()(1) <= 1e-6 * svd.singularValues()(0)) continue;
-    const double sign = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
-    const Eigen::Matrix3d turn = svd.matrixV() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixU().transpose();
-    int agreeing = 0;
-    for (int i = 0; i < matches.size(); ++i) {
-      const Eigen::Vector3d from_mean = matches.source_points.row(i).transpose() - source_mean;
-      const Eigen::Vector3d to_mean = matches.target_points.row(i).transpose() - target_mean;
-      if ((turn * from_mean - to_mean).norm() < tolerance_pr * matches.resolution) ++agreeing;
-    }
-    best = std::max(best, agreeing);
-  }
-  return best;
+  return {rows_by_otsu(scores, options.otsu), scores, tied};
 }
 
 }  // namespace corral::reference

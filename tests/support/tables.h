@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -80,9 +79,8 @@ inline SyntheticProblem synthetic(int matches, double inlier_ratio, std::uint64_
 
 /// What real tables hold and smooth random ones do not: keypoints without a frame, several matches at one keypoint
 /// (also with one target), equal feature distances, ratios that sit on the limit, no second feature.
-inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint64_t seed) {
-  CorrespondenceSet table = synthetic(matches, inlier_ratio, seed).matches;
-  for (int row = 0; row < matches; ++row) {
+inline CorrespondenceSet made_harsh(CorrespondenceSet table) {
+  for (int row = 0; row < table.size(); ++row) {
     const auto i = static_cast<std::size_t>(row);
     if (row % 7 == 3) table.source_frames[i].setZero();
     if (row % 11 == 5) table.target_frames[i].setZero();
@@ -95,6 +93,10 @@ inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint
   return table;
 }
 
+inline CorrespondenceSet harsh_table(int matches, double inlier_ratio, std::uint64_t seed) {
+  return made_harsh(synthetic(matches, inlier_ratio, seed).matches);
+}
+
 /// Low noise, four of five matches right.
 inline SyntheticProblem easy_problem(std::uint64_t seed) {
   SyntheticOptions options;
@@ -104,49 +106,6 @@ inline SyntheticProblem easy_problem(std::uint64_t seed) {
   options.frame_noise_deg = 0.5;
   options.seed = seed;
   return make_synthetic_problem(options);
-}
-
-/// The tables on which a promise about the form of the answer is checked.
-inline std::vector<CorrespondenceSet> varied_tables() {
-  std::vector<CorrespondenceSet> tables;
-  for (int rows = 0; rows <= 6; ++rows) tables.push_back(full_table(rows));
-  for (const double ratio : {0.05, 0.5, 1.0}) tables.push_back(harsh_table(200, ratio, 3));
-  CorrespondenceSet one_place = full_table(8);  // eight copies of one match
-  for (int row = 1; row < 8; ++row) {
-    one_place.source_points.row(row) = one_place.source_points.row(0);
-    one_place.target_points.row(row) = one_place.target_points.row(0);
-  }
-  tables.push_back(one_place);
-  CorrespondenceSet frameless = full_table(8);
-  for (auto& frame : frameless.source_frames) frame.setZero();
-  tables.push_back(frameless);
-  return tables;
-}
-
-/// All lengths, the ruler included, times a factor.
-inline CorrespondenceSet scaled(CorrespondenceSet table, double factor) {
-  table.source_points *= factor;
-  table.target_points *= factor;
-  table.resolution *= factor;
-  if (table.source_centroid) *table.source_centroid *= factor;
-  return table;
-}
-
-/// The target moved, its frames with it.
-inline CorrespondenceSet with_moved_target(CorrespondenceSet table, const RigidTransform& moved_from_target) {
-  table.target_points = moved_from_target.apply(table.target_points);
-  for (auto& frame : table.target_frames) frame = frame * moved_from_target.rotation.transpose();
-  return table;
-}
-
-/// Shared rows over all rows of two selections; 1 if both are empty.
-inline double jaccard(const Indices& a, const Indices& b) {
-  const std::set<int> first(a.begin(), a.end());
-  std::set<int> both(first);
-  both.insert(b.begin(), b.end());
-  std::size_t shared = 0;
-  for (const int row : std::set<int>(b.begin(), b.end())) shared += first.count(row);
-  return both.empty() ? 1.0 : static_cast<double>(shared) / static_cast<double>(both.size());
 }
 
 /// The text of the InvalidInput that a call throws; empty if it throws none.
