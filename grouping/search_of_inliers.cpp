@@ -99,7 +99,7 @@ class Voting {
   }
 
  private:
-  /// The `count` nearest of all other rows by squared distance in double, ties to the lower row: those whose squared float
+  /// The `count` nearest of all other rows by distance in double, ties to the lower row: those whose squared float
   /// distance is below what this returns, and what it leaves in undecided_. Floats bracket the last neighbour between two
   /// distances; what is within twice their error of the bracket is sorted by its double.
   float part_neighbours(int row, int count) {
@@ -124,7 +124,7 @@ class Voting {
     const auto end = static_cast<float>(last * last * (1 + 1e-6));
     const int certain = mark_between(squared_.data(), size, nearer, end, marks_.data());
     undecided_.clear();
-    visit_marks(marks_, [&](int other) { undecided_.emplace_back(squared_distance(row, other), other); });
+    visit_marks(marks_, [&](int other) { undecided_.emplace_back(point_distance(matches_.source_points, row, other), other); });
     std::sort(undecided_.begin(), undecided_.end());
     undecided_.resize(static_cast<std::size_t>(count - certain));
     return nearer;
@@ -145,12 +145,6 @@ class Voting {
       positive += (moved - matches_.target_points.row(voter).transpose()).norm() < tolerance_;
     }
     return positive;
-  }
-
-  double squared_distance(int i, int j) const {
-    const Points& p = matches_.source_points;
-    const double x = p(i, 0) - p(j, 0), y = p(i, 1) - p(j, 1), z = p(i, 2) - p(j, 2);
-    return x * x + y * y + z * z;
   }
 
   bool is_trusted(int row) const {
@@ -175,7 +169,7 @@ class Voting {
   const SimilarityFilter filter_;
   FloatColumn squared_, trusted_;                  // of all rows
   std::vector<std::uint8_t> marks_;                // of all rows
-  std::vector<std::pair<double, int>> undecided_;  // squared distance, row
+  std::vector<std::pair<double, int>> undecided_;  // distance, row
   float bracket_ = 1;                              // where the search for the last neighbour begins
   Indices global_voters_, voter_of_row_;
   FilterTable voter_table_ = table_;

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "tests/support/reference_groupers.h"
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -186,6 +187,25 @@ TEST(SearchOfInliers, AbsentColumnsAreNamed) {
   EXPECT_THAT(refusal_without([](auto& t) { t.feature_distance.resize(0); }), HasSubstr("column feature_distance"));
   EXPECT_THAT(refusal_without([](auto& t) { t.second_feature_distance.resize(0); }),
               HasSubstr("column second_feature_distance"));
+}
+
+TEST(SearchOfInliers, NeighboursAreThoseOfDoublesWhereFloatsCannotTell) {
+  // A lattice: many neighbours are equally far but for the last bits of a double.
+  CorrespondenceSet matches = testing::synthetic(216, 0.6, 1).matches;
+  for (int row = 0; row < matches.size(); ++row) {
+    const Eigen::RowVector3d place(row % 6, row / 6 % 6, row / 36);
+    matches.source_points.row(row) = 12.3 * Eigen::RowVector3d::Ones() + 0.37 * place;
+    matches.target_points.row(row) = (row % 5 == 0 ? 0.5 : 1.0) * matches.source_points.row(row);
+  }
+  matches.source_points(215, 0) = 5000;  // and far away another match, which makes floats coarse
+  for (const int voters : {3, 7, 20, 60}) {
+    SearchOfInliersOptions options;
+    options.voters = voters;
+    const reference::Selection expected = reference::search_of_inliers(matches, options);
+    const GroupingResult found = group_by_search_of_inliers(matches, options);
+    EXPECT_EQ(found.selected, expected.rows) << voters;
+    EXPECT_EQ(found.scores, expected.scores) << voters;
+  }
 }
 
 }  // namespace
