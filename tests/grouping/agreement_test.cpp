@@ -184,6 +184,27 @@ TEST(Agreement, RansacOnSmallTriangles) {
   expect_identical(group_by_ransac, reference::ransac, options, on);
 }
 
+/// A needle of 200 x 0.2 x 0.2 pr: the second singular value straddles 1e-6 of the first.
+CorrespondenceSet needle(std::uint64_t seed) {
+  const SyntheticProblem problem = synthetic(40, 0.7, seed);
+  const Eigen::Matrix3d thin = Eigen::Vector3d(1, 1e-3, 1e-3).asDiagonal();
+  CorrespondenceSet matches = problem.matches;
+  matches.source_points = (matches.source_points * thin).eval();
+  matches.target_points = problem.truth.apply(problem.truth.inverse().apply(matches.target_points) * thin);
+  return matches;
+}
+
+TEST(Agreement, RansacOnThinTriangles) {
+  RansacOptions options;
+  options.iterations = 30;
+  std::vector<NamedTable> on;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) on.push_back({"needle " + std::to_string(seed), needle(seed)});
+  for (const double tolerance : {0.5, 5.0}) {
+    options.tolerance_pr = tolerance;
+    expect_identical(group_by_ransac, reference::ransac, options, on);
+  }
+}
+
 TEST(Agreement, RansacFindsAsManyInliers) {
   for (const auto& [name, matches] :
        {named_table("smooth", 250, 0.2, 1), named_table("harsh", 250, 0.5, 2), named_table("smooth", 500, 0.1, 3)}) {

@@ -111,6 +111,15 @@ TEST(Spectral, WeightedPrefersStrongPairs) {
   EXPECT_THAT(group_by_spectral(matches, both).selected, ElementsAre(3, 4));
 }
 
+TEST(Spectral, WeightsCountToTheLastDigits) {
+  // The path 1 - 0 - 2 again. Row 2 a little farther out: r(0,2) = 0.6 + 6e-9, which no float tells from 0.6. Its entry
+  // exceeds that of row 1 by 5e-9, more than a tie.
+  SpectralOptions options = weighted();
+  options.once = true;
+  EXPECT_THAT(group_by_spectral(table_on_line({3, 0, 6}, {5, 0, 0}), options).selected, ElementsAre(0, 1));
+  EXPECT_THAT(group_by_spectral(table_on_line({3, 0, 6 + 3e-8}, {5, 0, 0}), options).selected, ElementsAre(0, 2));
+}
+
 TEST(Spectral, AcceptedMatchesAreCompatibleWithEachOther) {
   for (const SpectralOptions& options : {SpectralOptions(), once(), weighted()}) {
     const CorrespondenceSet matches = testing::harsh_table(150, 0.3, 8);

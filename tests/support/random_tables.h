@@ -27,8 +27,9 @@ inline CorrespondenceSet random_table(RandomStream& random) {
   return random.below(3) == 0 ? made_harsh(table) : table;
 }
 
-/// Whole numbers on one line, quarter turns, and ratios in steps of 0.05: differences, ratios and residuals sit on the
-/// limits 3, 0.6, 0.8, 0.9 and 5 time and again.
+/// Whole numbers on one line, half turns, and ratios in steps of 0.05: differences, ratios and residuals sit on the limits
+/// 3, 0.6, 0.8, 0.9 and 5 time and again. In every other table they lie beside them by what a double can tell but a float
+/// cannot.
 inline CorrespondenceSet table_on_the_limits(RandomStream& random) {
   CorrespondenceSet table = random_table(random);
   const auto whole = [&](int count) { return static_cast<double>(random.below(static_cast<std::uint64_t>(count))); };
@@ -36,16 +37,20 @@ inline CorrespondenceSet table_on_the_limits(RandomStream& random) {
   table.target_points.setZero();
   table.resolution = 1;
   const double width = 10 + whole(50);
+  const double nudge = random.below(2) == 0 ? 0 : 1;
+  const auto nudged = [&](double value, double step) { return value * (1 + nudge * step * (whole(5) - 2)); };
+  constexpr double kLengthStep = 0x1p-40, kFeatureStep = 0x1p-30;  // far from the ties of ST (1e-9) and Otsu (1e-12)
   for (int row = 0; row < table.size(); ++row) {
     const auto i = static_cast<std::size_t>(row);
     const double place = whole(static_cast<int>(width));
-    table.source_points(row, 0) = place;
-    table.target_points(row, 0) = random.below(2) == 0 ? place + whole(6) : whole(static_cast<int>(width));
+    const double image = random.below(2) == 0 ? place + whole(6) : whole(static_cast<int>(width));
+    table.source_points(row, 0) = nudged(place, kLengthStep);
+    table.target_points(row, 0) = nudged(image, kLengthStep);
     table.source_frames[i].setIdentity();
     table.target_frames[i] = Eigen::Vector3d(random.below(4) == 0 ? -1 : 1, 1, 1).asDiagonal();
     table.target_frames[i](1, 1) = table.target_frames[i](0, 0);
     table.second_feature_distance(row) = 1 + whole(4);
-    table.feature_distance(row) = table.second_feature_distance(row) * whole(21) / 20;
+    table.feature_distance(row) = nudged(table.second_feature_distance(row) * whole(21) / 20, kFeatureStep);
   }
   return table;
 }
