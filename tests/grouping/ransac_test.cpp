@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -45,9 +47,7 @@ TEST(Ransac, ResidualBelowTheToleranceAgrees) {
   EXPECT_THAT(result.scores, IsEmpty());
 }
 
-TEST(Ransac, NoAgreementGivesNoPose) {
-  expect_nothing(group_by_ransac(raised_triangle(), options_of(1 - 1e-9)));
-}
+TEST(Ransac, NoAgreementGivesNoPose) { expect_nothing(group_by_ransac(raised_triangle(), options_of(1 - 1e-9))); }
 
 TEST(Ransac, ToleranceIsInPr) {
   CorrespondenceSet matches = raised_triangle();
@@ -175,6 +175,40 @@ TEST(Ransac, OptionsOutOfRangeAreNamed) {
   EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(0)); }), HasSubstr("tolerance_pr"));
   EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(std::nan(""))); }), HasSubstr("tolerance_pr"));
   EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(5, 0)); }), HasSubstr("iterations"));
+}
+
+/// The first number of iterations after which a triple of right matches was as probable as asked.
+int iterations_until_confident(const CorrespondenceSet& matches, double confidence, RansacOptions options) {
+  for (int iterations = 1;; ++iterations) {
+    options.iterations = iterations;
+    const double share = static_cast<double>(group_by_ransac(matches, options).selected.size()) / matches.size();
+    if (std::pow(1 - share * share * share, iterations) <= 1 - confidence) return iterations;
+  }
+}
+
+TEST(Ransac, ConfidenceStopsTheSearchAndNothingElse) {
+  for (const std::uint64_t seed : {1, 2, 3})
+    for (const double confidence : {0.3, 0.9, 0.999}) {
+      const CorrespondenceSet matches = testing::synthetic(150, 0.5, seed).matches;
+      RansacOptions options;
+      options.seed = seed;
+      RansacOptions shorter = options;
+      shorter.iterations = iterations_until_confident(matches, confidence, options);
+      EXPECT_LT(shorter.iterations, 500);
+      options.confidence = confidence;
+      const GroupingResult found = group_by_ransac(matches, options), expected = group_by_ransac(matches, shorter);
+      EXPECT_EQ(found.selected, expected.selected);
+      EXPECT_EQ(found.target_from_source->rotation, expected.target_from_source->rotation);
+    }
+}
+
+TEST(Ransac, NoConfidenceIsEnoughForTheWholeSearch) {
+  const CorrespondenceSet matches = testing::synthetic(150, 0.3, 5).matches;
+  RansacOptions options;
+  options.iterations = 2000;
+  const Indices all = group_by_ransac(matches, options).selected;
+  options.confidence = 1;
+  EXPECT_EQ(group_by_ransac(matches, options).selected, all);
 }
 
 }  // namespace
