@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/compatibility.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace corral {
 
 std::vector<double> ratio_scores(const CorrespondenceSet& matches) {
   std::vector<double> scores(static_cast<std::size_t>(matches.size()));
   for (int row = 0; row < matches.size(); ++row) {
     const double d1 = matches.feature_distance(row), d2 = matches.second_feature_distance(row);
-    scores[static_cast<std::size_t>(row)] = d2 > 0 ? 1 - d1 / d2 : 0;
+    scores[static_cast<std::size_t>(row)] = d2 > 0 ? std::max(1 - d1 / d2, std::numeric_limits<double>::lowest()) : 0;
   }
   return scores;
 }

@@ -31,7 +31,8 @@ inline PairDistances pair_distances(const CorrespondenceSet& matches, int i, int
   return {point_distance(matches.source_points, i, j), point_distance(matches.target_points, i, j)};
 }
 
-/// Distinctiveness of each match, 1 - d1/d2: 0 where the second nearest feature is absent or coincides (d2 <= 0).
+/// Distinctiveness of each match, 1 - d1/d2: 0 where the second nearest feature is absent or coincides (d2 <= 0). Finite,
+/// also where d1/d2 is not.
 ///
 /// Source    [yang2017evaluation] eq. (2), [lowe2004distinctive]. Needs both feature distances.
 std::vector<double> ratio_scores(const CorrespondenceSet& matches);

@@ -77,5 +77,11 @@ TEST(NearestNeighborRatio, AbsentColumnsAreNamed) {
   EXPECT_THAT(refusal, HasSubstr("column feature_distance"));
 }
 
+TEST(NearestNeighborRatio, ScoresAreFiniteWhereTheRatioIsNot) {
+  const GroupingResult found = group_by_nearest_neighbor_ratio(table_of_features({0.5, 0.1}, {1e-310, 0.5}));
+  EXPECT_EQ(found.scores[0], std::numeric_limits<double>::lowest());
+  EXPECT_THAT(found.selected, ElementsAre(1));
+}
+
 }  // namespace
 }  // namespace corral
