@@ -28,12 +28,13 @@ struct CentredRows : PointPairs {
   }
 };
 
-/// False for points on one line or in one place (rounding apart); NaN is no extent either.
-bool span_a_plane(const Points& centred) {
+/// False for points on one line, or in one place up to the rounding of coordinates as far out as `mean`; NaN spans nothing.
+bool span_a_plane(const Points& centred, double mean = 0) {
   const Eigen::Vector3d scatter =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred.transpose() * centred, Eigen::EigenvaluesOnly)
           .eigenvalues();
-  return scatter(1) > kThinnest * scatter(2);
+  const double rounding = 1e-15 * mean;
+  return scatter(1) > kThinnest * scatter(2) && scatter(2) > static_cast<double>(centred.rows()) * rounding * rounding;
 }
 
 /// The same of the source points as far as their rows still have a weight.
@@ -139,7 +140,9 @@ RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, 
 
   const CentredRows centred(matches, rows);
   refined.status = RefineStatus::DegenerateGeometry;
-  if (!span_a_plane(centred.source) || !span_a_plane(centred.target)) return refined;
+  if (!span_a_plane(centred.source, centred.source_mean.norm() / matches.resolution) ||
+      !span_a_plane(centred.target, centred.target_mean.norm() / matches.resolution))
+    return refined;
   const auto initial =
       start ? centred_pose(*start, centred, matches.resolution) : fit_rigid_transform(centred.source, centred.target);
   if (!initial) return refined;

@@ -207,10 +207,15 @@ TEST(RefineRigidLosses, RowsThatKeepTheirWeightMustFixThePose) {
                                                      {0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 45, 45});
   matches.source_points(10, 1) = 30, matches.source_points(11, 1) = -30;
   matches.target_points(10, 1) = 300, matches.target_points(11, 2) = 400;
-  const RefinedPose found = refine(matches, RobustLoss::Tukey, 5, RigidTransform());
-  EXPECT_EQ(found.status, RefineStatus::Diverged);
-  EXPECT_FALSE(found.target_from_source || found.covariance || found.condition || found.converged);
-  EXPECT_TRUE(found.initial.has_value());
+  for (const double thickness_pr : {0.0, 0.01}) {  // the second is no line, to rounding, but thinner than a thousandth
+    matches.source_points(3, 1) = matches.target_points(3, 1) = thickness_pr;
+    const RefinedPose found = refine(matches, RobustLoss::Tukey, 5, RigidTransform());
+    EXPECT_EQ(found.status, RefineStatus::Diverged);
+    EXPECT_FALSE(found.target_from_source || found.covariance || found.condition || found.converged);
+    EXPECT_TRUE(found.initial.has_value());
+  }
+  matches.source_points(3, 1) = matches.target_points(3, 1) = 1;
+  EXPECT_EQ(refine(matches, RobustLoss::Tukey, 5, RigidTransform()).status, RefineStatus::Refined);
 }
 
 TEST(RefineRigidLosses, StartDecidesAmongTwoPoses) {

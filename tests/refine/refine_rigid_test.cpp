@@ -238,6 +238,11 @@ TEST(RefineRigid, RowsWithoutExtentGiveNoPose) {
       expect_no_pose(refine_rigid(testing::table_of_points(source, target), {0, 1, 2, 3}, {}, RigidTransform()),
                      RefineStatus::DegenerateGeometry);
   }
+  // One place, told apart by the last bit of its coordinates alone.
+  CorrespondenceSet bits = testing::table_of_points(spread, spread);
+  bits.source_points.array() = 1e6 + (bits.source_points.array() > 0).cast<double>() * 1.2e-10;
+  expect_no_pose(refine(bits), RefineStatus::DegenerateGeometry);
+  expect_no_pose(refine_rigid(bits, {0, 1, 2, 3}, {}, RigidTransform()), RefineStatus::DegenerateGeometry);
   // One match many times.
   const CorrespondenceSet matches = problem(10, 1, 0, 12).matches;
   expect_no_pose(refine_rigid(matches, {3, 3, 3, 3}), RefineStatus::DegenerateGeometry);
