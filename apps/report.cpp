@@ -158,6 +158,9 @@ Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors) {
   json["initial"] = pose.initial ? to_json(*pose.initial) : Json(nullptr);
   json["initial_rms_pr"] = pose.initial ? Json(pose.initial_rms_pr) : Json(nullptr);
   json["final_rms_pr"] = pose.target_from_source ? Json(pose.final_rms_pr) : Json(nullptr);
+  json["initial_cost"] = pose.initial ? Json(pose.initial_cost) : Json(nullptr);
+  json["final_cost"] = pose.target_from_source ? Json(pose.final_cost) : Json(nullptr);
+  json["condition"] = json_or_null(pose.condition);
   json["covariance"] = nullptr;
   if (pose.covariance) {
     json["covariance"] = Json::array();

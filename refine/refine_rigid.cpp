@@ -1,35 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "refine/refine_rigid.h"
 
-#include <ceres/ceres.h>
-#include <ceres/rotation.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "kernel/error.h"
+#include "refine/rigid_descent.h"
 
 namespace corral {
 namespace {
 
-/// Residual of one match: rotated point plus shift minus its partner, all in pr about the two centroids.
-struct PointResidual {
-  Eigen::Vector3d source, target;
-
-  template <class T>
-  bool operator()(const T* quaternion, const T* shift, T* residual) const {
-    const T point[3] = {T(source.x()), T(source.y()), T(source.z())};
-    ceres::QuaternionRotatePoint(quaternion, point, residual);
-    for (int axis = 0; axis < 3; ++axis) residual[axis] += shift[axis] - target(axis);
-    return true;
-  }
-};
+/// Two scatters below this share of the largest leave a line (or a place): the limit of fit_rigid_transform.
+constexpr double kThinnest = 1e-6;
 
 /// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an
 /// offset of the coordinates costs no digits.
-struct CentredRows {
-  Points source, target;
+struct CentredRows : PointPairs {
   Eigen::Vector3d source_mean, target_mean;  // mesh units
 
   CentredRows(const CorrespondenceSet& matches, const Indices& rows) {
@@ -42,36 +28,34 @@ struct CentredRows {
   }
 };
 
-double rms(const RigidTransform& pose, const CentredRows& rows) {
-  return std::sqrt((pose.apply(rows.source) - rows.target).squaredNorm() / static_cast<double>(rows.source.rows()));
+/// False for points on one line, or in one place up to the rounding of coordinates as far out as `mean`; NaN spans nothing.
+bool span_a_plane(const Points& centred, double mean = 0) {
+  const Eigen::Vector3d scatter =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred.transpose() * centred, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  const double rounding = 1e-15 * mean;
+  return scatter(1) > kThinnest * scatter(2) && scatter(2) > static_cast<double>(centred.rows()) * rounding * rounding;
 }
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
+/// The same of the source points as far as their rows still have a weight.
+bool kept_rows_span_a_plane(const RigidTransform& pose, const PointPairs& pairs, const ScaledLoss& loss) {
+  Eigen::VectorXd weights = (pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm();
+  for (double& weight : weights) weight = evaluate_loss(loss, weight).weight;
+  const Eigen::RowVector3d mean = weights.transpose() * pairs.source / weights.sum();
+  return span_a_plane(weights.cwiseSqrt().asDiagonal() * (pairs.source.rowwise() - mean));
 }
 
-/// Covariance of (rotation vector, shift) in the frame of the centred rows, rad and pr.
-PoseCovariance centred_covariance(const RigidTransform& pose, const CentredRows& rows, double loss_scale) {
-  PoseCovariance information = PoseCovariance::Zero();
-  double weighted_squares = 0;
-  for (Eigen::Index row = 0; row < rows.source.rows(); ++row) {
-    const Eigen::Vector3d rotated = pose.rotation * rows.source.row(row).transpose();
-    const double squared = (rotated + pose.translation - rows.target.row(row).transpose()).squaredNorm();
-    const double weight = 1 / (1 + squared / (loss_scale * loss_scale));  // rho'
-    Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian << -cross_matrix(rotated), Eigen::Matrix3d::Identity();
-    information += weight * jacobian.transpose() * jacobian;
-    weighted_squares += weight * squared;
-  }
-  const double freedom = 3.0 * static_cast<double>(rows.source.rows()) - 6.0;
-  return weighted_squares / freedom * information.inverse();
+double rms(const RigidTransform& pose, const PointPairs& pairs) {
+  return std::sqrt((pose.apply(pairs.source) - pairs.target).squaredNorm() / static_cast<double>(pairs.source.rows()));
 }
 
-/// The pose in mesh units from the pose of the centred rows.
+/// The pose in mesh units from the pose of the centred rows, and back.
 RigidTransform uncentred(const RigidTransform& pose, const CentredRows& rows, double resolution) {
   return {pose.rotation, rows.target_mean + resolution * pose.translation - pose.rotation * rows.source_mean};
+}
+RigidTransform centred_pose(const RigidTransform& pose, const CentredRows& rows, double resolution) {
+  const Eigen::Matrix3d rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+  return {rotation, (rotation * rows.source_mean + pose.translation - rows.target_mean) / resolution};
 }
 
 PoseCovariance uncentred(const PoseCovariance& covariance, const RigidTransform& pose, const CentredRows& rows,
@@ -80,44 +64,56 @@ PoseCovariance uncentred(const PoseCovariance& covariance, const RigidTransform&
   PoseCovariance change = PoseCovariance::Identity();
   change.bottomRightCorner<3, 3>() *= resolution;
   change.bottomLeftCorner<3, 3>() = cross_matrix(pose.rotation * rows.source_mean);
-  return change * covariance * change.transpose();
+  const PoseCovariance moved = change * covariance * change.transpose();
+  return (moved + moved.transpose()) / 2;  // symmetric to the last bit
 }
 
-ceres::Solver::Summary solve(const CentredRows& rows, const RefineOptions& options, RigidTransform& pose) {
-  const Eigen::Quaterniond start(pose.rotation);
-  double quaternion[4] = {start.w(), start.x(), start.y(), start.z()};
-  ceres::CauchyLoss loss(options.loss_scale_pr);
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  problem.AddParameterBlock(quaternion, 4, new ceres::QuaternionManifold);
-  problem.AddParameterBlock(pose.translation.data(), 3);
-  for (Eigen::Index row = 0; row < rows.source.rows(); ++row) {
-    auto* residual = new PointResidual{rows.source.row(row).transpose(), rows.target.row(row).transpose()};
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointResidual, 3, 4, 3>(residual), &loss, quaternion,
-                             pose.translation.data());
+/// s^2 of the header.
+double residual_variance(const RigidTransform& pose, const PointPairs& pairs, const ScaledLoss& loss) {
+  const double count = static_cast<double>(pairs.source.rows());
+  const Eigen::VectorXd squares = (pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm();
+  double pulls = 0, weights = 0, slopes = 0, slope_squares = 0;
+  for (const double squared : squares) {
+    const LossValue at = evaluate_loss(loss, squared);
+    const double slope = at.weight + at.bend * 2 / 3;
+    pulls += at.weight * at.weight * squared;
+    weights += at.weight;
+    slopes += slope;
+    slope_squares += slope * slope;
   }
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;  // Ceres sums per thread: more threads, other bits
-  solver.max_num_iterations = options.maximum_iterations;
-  solver.function_tolerance = 1e-14;
-  solver.gradient_tolerance = 1e-14;
-  solver.parameter_tolerance = 1e-14;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  pose.rotation =
-      Eigen::Quaterniond(quaternion[0], quaternion[1], quaternion[2], quaternion[3]).normalized().toRotationMatrix();
-  return summary;
+  const double mean_slope = slopes / count;
+  const double small_sample = 1 + 2 / count * (slope_squares / count / (mean_slope * mean_slope) - 1);
+  return small_sample * small_sample * pulls / (3 * count - 6) * weights / count / (mean_slope * mean_slope);
 }
 
-void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOptions& options) {
+void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOptions& options,
+           const std::optional<RigidTransform>& start) {
   matches.validate();
   require_positive("refine_rigid", "loss_scale_pr", options.loss_scale_pr);
   if (options.maximum_iterations < 1)
     throw InvalidInput("refine_rigid", "maximum_iterations", options.maximum_iterations, "at least 1");
+  if (start && !(is_rotation(start->rotation, 1e-4) && start->translation.allFinite()))
+    throw InvalidInput("refine_rigid", "start", "a motion that is not rigid",
+                       "an orthonormal rotation (to 1e-4) and a finite translation");
   check_rows(matches, rows, "refine_rigid");
+}
+
+/// Fills in what follows from the pose of the centred rows; false if they do not fix it.
+bool describe(const RigidDescent& found, const CentredRows& rows, const ScaledLoss& loss, double resolution,
+              RefinedPose& refined) {
+  const PoseCovariance normal = rigid_cost(rows, found.pose, loss).normal;
+  const Eigen::Matrix<double, 6, 1> values =
+      Eigen::SelfAdjointEigenSolver<PoseCovariance>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  const PoseCovariance covariance =
+      uncentred(residual_variance(found.pose, rows, loss) * normal.inverse(), found.pose, rows, resolution);
+  if (!(values(0) > 0) || !covariance.allFinite() || !kept_rows_span_a_plane(found.pose, rows, loss)) return false;
+  refined.target_from_source = uncentred(found.pose, rows, resolution);
+  refined.converged = found.converged;
+  refined.final_rms_pr = rms(found.pose, rows);
+  refined.final_cost = found.cost;
+  refined.condition = values(5) / values(0);
+  refined.covariance = covariance;
+  return true;
 }
 
 }  // namespace
@@ -136,35 +132,30 @@ const char* to_text(RefineStatus status) {
   return "diverged";
 }
 
-RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, const RefineOptions& options) {
-  check(matches, rows, options);
+RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, const RefineOptions& options,
+                         const std::optional<RigidTransform>& start) {
+  check(matches, rows, options, start);
   RefinedPose refined;
   if (rows.size() < 3) return refined;
 
   const CentredRows centred(matches, rows);
-  const auto start = fit_rigid_transform(centred.source, centred.target);
-  if (!start) {
-    refined.status = RefineStatus::DegenerateGeometry;
+  refined.status = RefineStatus::DegenerateGeometry;
+  if (!span_a_plane(centred.source, centred.source_mean.norm() / matches.resolution) ||
+      !span_a_plane(centred.target, centred.target_mean.norm() / matches.resolution))
     return refined;
-  }
-  refined.initial = uncentred(*start, centred, matches.resolution);
-  refined.initial_rms_pr = rms(*start, centred);
+  const auto initial =
+      start ? centred_pose(*start, centred, matches.resolution) : fit_rigid_transform(centred.source, centred.target);
+  if (!initial) return refined;
 
-  RigidTransform pose = *start;
-  const ceres::Solver::Summary summary = solve(centred, options, pose);
-  refined.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  refined.converged = summary.termination_type == ceres::CONVERGENCE;
-  refined.final_rms_pr = rms(pose, centred);
-  const PoseCovariance covariance =
-      uncentred(centred_covariance(pose, centred, options.loss_scale_pr), pose, centred, matches.resolution);
-  if (!summary.IsSolutionUsable() || !covariance.allFinite()) {
-    refined.status = RefineStatus::Diverged;
-    refined.converged = false;
-    return refined;
-  }
-  refined.status = RefineStatus::Refined;
-  refined.target_from_source = uncentred(pose, centred, matches.resolution);
-  refined.covariance = (covariance + covariance.transpose()) / 2;  // symmetric to the last bit
+  const ScaledLoss loss{options.loss, options.loss_scale_pr};
+  refined.status = RefineStatus::Diverged;
+  refined.initial = start ? *start : uncentred(*initial, centred, matches.resolution);
+  refined.initial_rms_pr = rms(*initial, centred);
+  refined.initial_cost = rigid_cost(centred, *initial, loss).cost;
+  const RigidDescent found = descend_rigid_cost(centred, *initial, loss, options.maximum_iterations);
+  refined.iterations = found.iterations;
+  if (found.is_usable && describe(found, centred, loss, matches.resolution, refined))
+    refined.status = RefineStatus::Refined;
   return refined;
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral refine: from a selection to a pose.
+#include <algorithm>
+#include <cmath>
+
 #include "apps/commands/commands.h"
 #include "apps/report.h"
 #include "io/file.h"
@@ -12,10 +15,25 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string matches, group, truth, output;
+  std::string matches, group, truth, start, loss = choice_names(RobustLoss())[int(RefineOptions().loss)], output;
   double threshold_pr = 4;
+  RefineOptions options;
   bool json = false;
 };
+
+/// The names of all losses with something between them.
+std::string loss_names(const std::string& separator) {
+  std::string text;
+  for (const char* name : choice_names(RobustLoss())) text += (text.empty() ? "" : separator) + name;
+  return text;
+}
+
+RobustLoss loss_of(const std::string& text) {
+  const auto names = choice_names(RobustLoss());
+  const auto found = std::find(names.begin(), names.end(), text);
+  if (found == names.end()) throw UsageError("--loss: found '" + text + "', expected " + loss_names(", "));
+  return static_cast<RobustLoss>(found - names.begin());
+}
 
 /// The source points of the right matches: where the two surfaces are known to overlap without seeing them.
 PairTruth truth_of(const CorrespondenceSet& matches, const Settings& settings) {
@@ -32,7 +50,8 @@ std::string in_words(const RefinedPose& pose, const std::optional<PoseErrors>& e
   if (!pose.target_from_source) return std::string("no pose: ") + to_text(pose.status);
   std::string text = std::string(to_text(pose.status)) + (pose.converged ? ", converged after " : ", stopped after ") +
                      std::to_string(pose.iterations) + " iterations, RMS residual " + fixed(pose.initial_rms_pr, 3) +
-                     " -> " + fixed(pose.final_rms_pr, 3) + " pr";
+                     " -> " + fixed(pose.final_rms_pr, 3) + " pr, cost " + fixed(pose.initial_cost, 3) + " -> " +
+                     fixed(pose.final_cost, 3) + " pr^2";
   if (errors) {
     text += "; rotation error " + fixed(errors->rotation_error_deg, 4) + " deg, translation error " +
             fixed(errors->translation_error_pr, 4) + " pr";
@@ -41,13 +60,18 @@ std::string in_words(const RefinedPose& pose, const std::optional<PoseErrors>& e
   return text;
 }
 
-int refine(const Settings& settings) {
+int refine(Settings settings) {
   check_threshold(settings.threshold_pr);
+  settings.options.loss = loss_of(settings.loss);
+  if (!(settings.options.loss_scale_pr > 0) || !std::isfinite(settings.options.loss_scale_pr))
+    throw UsageError("--loss-scale-pr: expected a finite length above 0");
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
   std::optional<PairTruth> truth;
   if (!settings.truth.empty()) truth = truth_of(matches, settings);
-  const RefinedPose pose = refine_rigid(matches, group.selected);
+  std::optional<RigidTransform> start;
+  if (!settings.start.empty()) start = read_transform(settings.start);
+  const RefinedPose pose = refine_rigid(matches, group.selected, settings.options, start);
   std::optional<PoseErrors> errors;
   if (truth && pose.target_from_source) errors = pose_errors(*pose.target_from_source, *truth, matches.resolution);
 
@@ -70,17 +94,28 @@ void add_refine(CLI::App& app, Action& action) {
   command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds the errors of the pose")
       ->type_name("FILE");
+  command->add_option("--loss", settings->loss, "What a residual costs: " + loss_names(", "))->capture_default_str();
+  command
+      ->add_option("--loss-scale-pr", settings->options.loss_scale_pr,
+                   "Residual at which a match begins to lose its influence (tukey: has none left; none: no use for it)")
+      ->capture_default_str();
+  command
+      ->add_option("--start", settings->start,
+                   "Where to start, a 4x4 matrix (default: the least-squares fit of the selection)")
+      ->type_name("FILE");
   command
       ->add_option("--threshold-pr", settings->threshold_pr,
                    "Residual of a right match; RMSE is taken over the source points of the right matches")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)")
       ->type_name("FILE");
-  command->add_flag("--json", settings->json, "Pose, covariance, errors and status as JSON on standard output");
+  command->add_flag("--json", settings->json,
+                    "Pose, covariance, condition, costs, errors and status as JSON on standard output");
   command->footer(
       "Without a pose (fewer than 3 rows, or all on one line) there is no pose file and the status says why.\n"
       "Examples:\n  corral refine matches.csv group.csv -o pose.txt\n"
-      "  corral refine matches.csv group.csv --truth truth.txt --json");
+      "  corral refine matches.csv group.csv --truth truth.txt --json\n"
+      "  corral refine matches.csv group.csv --loss geman-mcclure --loss-scale-pr 3 --start method_pose.txt");
   command->callback([settings, &action] { action = [settings] { return refine(*settings); }; });
 }
 

@@ -94,8 +94,11 @@ TEST(Usage, LengthsArePositiveAndFinite) {
     expect_usage(place.corral("run a.ply a.ply --truth truth.txt --threshold-pr " + value), "--threshold-pr");
     expect_usage(place.corral("perturb a.ply -o b.ply --noise-pr " + value), "--noise-pr");
   }
+  expect_usage(place.corral("refine matches.csv group.csv --loss tuckey"),
+               "--loss: found 'tuckey', expected none, huber, cauchy, tukey, geman-mcclure");
   for (const char* bad : {"0", "-1", "nan", "inf", "x"}) {
     const std::string value(bad);
+    expect_usage(place.corral("refine matches.csv group.csv --loss-scale-pr " + value), "--loss-scale-pr");
     expect_usage(place.corral("match a.ply a.ply --keypoint-radius-pr " + value), "--keypoint-radius-pr");
     expect_usage(place.corral("match a.ply a.ply --support-radius-pr " + value), "--support-radius-pr");
     expect_usage(place.corral("run a.ply a.ply --support-radius-pr " + value), "--support-radius-pr");
@@ -111,8 +114,9 @@ TEST(BadInput, EveryCommandNamesTheFileThatIsMissing) {
        {"info no.ply", "match no.ply a.ply", "match a.ply no.ply", "run no.ply a.ply", "run a.ply no.ply",
         "run a.ply a.ply --truth no.ply", "perturb no.ply -o b.ply", "triangulate no.ply -o b.ply",
         "group no.ply -m gc", "refine no.ply group.csv", "refine matches.csv no.ply",
-        "refine matches.csv group.csv --truth no.ply", "score no.ply group.csv --truth truth.txt",
-        "score matches.csv no.ply --truth truth.txt", "score matches.csv group.csv --truth no.ply"}) {
+        "refine matches.csv group.csv --truth no.ply", "refine matches.csv group.csv --start no.ply",
+        "score no.ply group.csv --truth truth.txt", "score matches.csv no.ply --truth truth.txt",
+        "score matches.csv group.csv --truth no.ply"}) {
     SCOPED_TRACE(command);
     expect_bad_input(place.corral(command), "no.ply: does not exist");
   }
@@ -146,6 +150,7 @@ TEST(BadInput, EveryCommandRefusesMalformedFiles) {
       {"refine matches.csv short.csv", "short.csv: has 99 rows, expected 100, one per match"},
       {"score matches.csv group.csv --truth scaled.txt", "scaled.txt, rotation: not rigid"},
       {"refine matches.csv group.csv --truth scaled.txt -o pose.txt", "det R is 8"},
+      {"refine matches.csv group.csv --start scaled.txt -o pose.txt", "scaled.txt, rotation: not rigid"},
       {"run good.ply good.ply --truth scaled.txt -o out", "scaled.txt, rotation: not rigid"}};
   const auto before = place.names();
   for (const auto& [command, sentence] : said) {

@@ -129,6 +129,28 @@ TEST(Refine, FindsThePoseAndJudgesIt) {
               AllOf(HasSubstr("rotation error"), HasSubstr("RMSE")));
 }
 
+TEST(Refine, TakesALossAndAStart) {
+  const Workplace place;
+  const SyntheticProblem problem = place.put_problem();
+  const auto usual = place.corral("refine matches.csv group.csv --json").json();
+  EXPECT_EQ(place.corral("refine matches.csv group.csv --json --loss cauchy --loss-scale-pr 5").json(), usual);
+  place.put("start.txt", "0 -1 0 3\n1 0 0 4\n0 0 1 5\n0 0 0 1\n");
+  for (const std::string loss : {"none", "huber", "cauchy", "tukey", "geman-mcclure"}) {
+    SCOPED_TRACE(loss);
+    const std::string command = "refine matches.csv group.csv --json --loss " + loss + " --loss-scale-pr 4";
+    const auto json = place.corral(command).json();
+    EXPECT_EQ(json["status"], "refined");
+    EXPECT_LE(json["final_cost"], json["initial_cost"]);
+    EXPECT_GT(json["condition"], 1);
+    EXPECT_EQ(json["final_cost"] == usual["final_cost"], false);
+    const auto started = place.corral(command + " --start start.txt").json();
+    EXPECT_EQ(started["initial"], nlohmann::json::parse("[[0.0,-1.0,0.0,3.0],[1.0,0.0,0.0,4.0],[0.0,0.0,1.0,5.0],"
+                                                        "[0.0,0.0,0.0,1.0]]"));
+    EXPECT_GT(started["initial_cost"], json["initial_cost"]);
+  }
+  EXPECT_THAT(place.corral("refine matches.csv group.csv").err, HasSubstr(" pr, cost "));
+}
+
 TEST(Refine, WithoutThreeRowsThereIsNoPose) {
   const Workplace place;
   place.put_problem();
@@ -137,8 +159,8 @@ TEST(Refine, WithoutThreeRowsThereIsNoPose) {
     const Outcome outcome = place.corral("refine matches.csv group.csv --truth truth.txt --json -o pose.txt");
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.json()["status"], "too few rows");
-    for (const char* key :
-         {"target_from_source", "rotation_error_deg", "translation_error_pr", "rmse_pr", "covariance"})
+    for (const char* key : {"target_from_source", "rotation_error_deg", "translation_error_pr", "rmse_pr", "covariance",
+                            "condition", "initial_cost", "final_cost"})
       EXPECT_TRUE(outcome.json()[key].is_null()) << key;
     EXPECT_THAT(place.names(), Not(Contains("pose.txt")));
     const Outcome talk = place.corral("refine matches.csv group.csv");

@@ -150,8 +150,9 @@ TEST(ToJson, AFailureHasNothingButItsStatus) {
 TEST(ToJson, APoseThatIsAbsentIsNull) {
   const Json json = to_json(RefinedPose(), std::nullopt);
   EXPECT_EQ(json["status"], "too few rows");
-  for (const char* key : {"target_from_source", "rotation_error_deg", "translation_error_pr", "rmse_pr",
-                          "mean_error_pr", "initial", "initial_rms_pr", "final_rms_pr", "covariance"})
+  for (const char* key :
+       {"target_from_source", "rotation_error_deg", "translation_error_pr", "rmse_pr", "mean_error_pr", "initial",
+        "initial_rms_pr", "final_rms_pr", "initial_cost", "final_cost", "condition", "covariance"})
     EXPECT_TRUE(json.at(key).is_null()) << key;
 }
 
