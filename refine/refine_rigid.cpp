@@ -10,7 +10,7 @@
 namespace corral {
 namespace {
 
-/// Two scatters below this share of the largest leave a line (or a place): the limit of fit_rigid_transform.
+/// A second scatter of at most this share of the largest is that of a line: the limit of fit_rigid_transform.
 constexpr double kThinnest = 1e-6;
 
 /// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an
