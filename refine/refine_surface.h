@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "kernel/rigid_transform.h"
+#include "kernel/types.h"
+
+namespace corral {
+
+/// For each query (N x 3, in the target) the row of the nearest target point, -1 if none lies within the limit (mesh
+/// units). NearestTracker::nearest is one.
+using NearestRows = std::function<const Indices&(const Points& queries, double limit)>;
+
+/// Two surfaces as points. What is referred to must outlive the call.
+struct SurfacePair {
+  const Points& source;          ///< N x 3, mesh units
+  const Points& target;          ///< V x 3
+  const Points& target_normals;  ///< V x 3, unit length; zero or NaN: none, and nothing is paired with that point
+  double resolution;             ///< mesh units per pr
+  NearestRows nearest;           ///< among the target points
+};
+
+enum class SurfaceResidual {
+  PointToPlane,  ///< r = n_j . (T p_i - q_j)  [chen1992object]
+  PointToPoint,  ///< r = T p_i - q_j          [besl1992method]
+};
+
+struct SurfaceLevel {
+  double limit_pr;       ///< points farther apart are no pair
+  int step;              ///< every so manieth source point takes part
+  int most_rounds = 50;  ///< of pairing and fitting
+};
+
+struct SurfaceOptions {
+  SurfaceResidual residual = SurfaceResidual::PointToPlane;
+  std::vector<SurfaceLevel> levels = {{20, 16}, {10, 4}, {4, 1}};  ///< coarse to fine
+  double rest_pr = 1e-4;            ///< a round that moves the source by less (root mean square, at most) ends a level
+  double least_overlap = 0.05;      ///< share of source points that must find a partner
+  double largest_condition = 1000;  ///< of the point-to-plane normal equations
+};
+
+enum class SurfaceStatus {
+  Refined,             ///< a pose was found
+  TooLittleOverlap,    ///< fewer pairs than `least_overlap`, or than 6: no pose
+  DegenerateGeometry,  ///< the paired surface slides upon itself, as a plane or a sphere does: no pose
+  Diverged,            ///< the optimiser found no usable pose: no pose
+};
+
+/// "refined", "too little overlap", "degenerate geometry", "diverged".
+const char* to_text(SurfaceStatus status);
+
+/// How a pose lays all source points on the target, within the limit of the last level.
+struct SurfaceFit {
+  double overlap = 0;  ///< share of source points with a partner
+  double rms_pr = 0;   ///< root mean square residual over the pairs, pr; 0 if there are none
+};
+
+/// One round of pairing and fitting; squares are sums over its pairs, pr^2.
+struct SurfaceRound {
+  double overlap;                        ///< share of the points of the level that found a partner
+  double cost;                           ///< E at the pose of the pairing, pr^2
+  double squares_before, squares_after;  ///< of the residuals of these pairs; the fit never raises them
+};
+
+struct RefinedSurface {
+  SurfaceStatus status = SurfaceStatus::TooLittleOverlap;
+  std::optional<RigidTransform> target_from_source;  ///< absent unless the status is Refined
+  SurfaceFit before, after;                          ///< at the start, and at the last pose that was looked at
+  double condition = 0;                              ///< of the normal equations there; infinite if singular
+  std::vector<std::vector<SurfaceRound>> levels;     ///< the rounds of each level that was reached
+};
+
+/// Lays one surface on another from a pose that is nearly right: iterative closest points, coarse to fine.
+///
+///   E(T) = 1/N sum_i min( |r_i|^2, limit^2 )   with q_j the target point nearest to T p_i, limit^2 where it is too far
+///
+/// Each round pairs every point with the nearest and then minimises the sum over those pairs (Ceres, one thread). A residual
+/// is linear in (R, t), so that the sum depends on the pairs only through the Gram matrix of 13 columns: its root is what
+/// Ceres sees. Of points to points, E never rises. Of points to planes it may, because the nearest point is not the one
+/// with the least residual. A level ends at rest, or after three rounds without a lower E than before.
+/// Normal equations: sum a a^T over the pairs, a = ( (q - c) x n / s, n ) with c the mean of the q and s their root mean
+/// square distance from it; the condition is the ratio of their largest to their smallest eigenvalue.
+///
+/// Source    [besl1992method], [chen1992object]; degenerate surfaces after [gelfand2003geometrically].
+/// Cost      one search and about 100 multiplications per point and round. Deterministic: same input, same bytes.
+/// Throws    InvalidInput: option out of range, no level, normals and target differ in length, a start that is not finite.
+/// Departs   The levels are fixed multiples of pr, not shares of the sorted distances. Degenerate surfaces are judged by the
+///           point-to-plane equations for both residuals: those of points to points are regular on a plane too, because
+///           each point holds on to a partner that means nothing.
+RefinedSurface refine_surface(const SurfacePair& surfaces, const RigidTransform& start,
+                              const SurfaceOptions& options = {});
+
+}  // namespace corral
