@@ -35,7 +35,7 @@ std::vector<GrouperPeer> plain_peers() {
       {"gc", "loops", kAny,
        on_table([](const CorrespondenceSet& matches) { return plain::largest_star(matches, 3 * matches.resolution); })},
       {"si", "loops", 2000,
-       on_table([](const CorrespondenceSet& matches) { return reference::search_of_inliers(matches, {}); })},
+       on_table([](const CorrespondenceSet& matches) { return reference::search_of_inliers(matches, {}).rows; })},
   };
 }
 

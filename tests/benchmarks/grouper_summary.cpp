@@ -79,13 +79,13 @@ double rate(const Kernel& kernel) {
 /// Absent where there is no reference, or where it would take too long.
 std::optional<Indices> reference_selection(const std::string& grouper, const CorrespondenceSet& matches) {
   const int count = matches.size();
-  if (grouper == "ss") return reference::similarity_score(matches, {});
-  if (grouper == "nnsr") return reference::nearest_neighbor_ratio(matches, {});
-  if (grouper == "st" && count <= 500) return reference::spectral(matches, {});
-  if (grouper == "gc" && count <= 500) return reference::geometric_consistency(matches, {});
+  if (grouper == "ss") return reference::similarity_score(matches, {}).rows;
+  if (grouper == "nnsr") return reference::nearest_neighbor_ratio(matches, {}).rows;
+  if (grouper == "st" && count <= 500) return reference::spectral(matches, {}).rows;
+  if (grouper == "gc" && count <= 500) return reference::geometric_consistency(matches, {}).rows;
   if (grouper == "gc") return plain::largest_star(matches, 3 * matches.resolution);
-  if (grouper == "hough") return reference::hough_voting(matches, {});
-  if (grouper == "si" && count <= 5000) return reference::search_of_inliers(matches, {});
+  if (grouper == "hough") return reference::hough_voting(matches, {}).rows;
+  if (grouper == "si" && count <= 5000) return reference::search_of_inliers(matches, {}).rows;
   return std::nullopt;
 }
 
