@@ -7,6 +7,19 @@
 #include "apps/stopwatch.h"
 
 namespace corral {
+namespace {
+
+/// Scores what was found, and refines and judges its pose.
+void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
+  if (truth)
+    record.score =
+        score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
+  record.pose = refine_rigid(matches, record.found.selected);
+  if (truth && record.pose.target_from_source)
+    record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
+}
+
+}  // namespace
 
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
   return {rotation_error_deg(estimate, truth.target_from_source),
@@ -40,6 +53,19 @@ std::string too_large(const ConfiguredGrouper& grouper, int matches, double memo
   return "needs " + fixed(needed / 1e6, 1) + " MB, the limit is " + fixed(memory_limit / 1e6, 1) + " MB";
 }
 
+std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth) {
+  const std::vector<bool> labels = label_inliers(matches, truth.target_from_source, truth.threshold_pr);
+  std::vector<MethodRecord> bounds(2);
+  bounds[0].method = "oracle";
+  bounds[1].method = "floor";
+  for (int row = 0; row < matches.size(); ++row) {
+    if (labels[static_cast<std::size_t>(row)]) bounds[0].found.selected.push_back(row);
+    bounds[1].found.selected.push_back(row);
+  }
+  for (MethodRecord& bound : bounds) judge(bound, matches, truth);
+  return bounds;
+}
+
 MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
                              const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
                              double memory_limit) {
@@ -52,12 +78,7 @@ MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& g
     TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
     record.found = std::move(timed.found);
     record.time_ms = timed.time_ms;
-    if (truth)
-      record.score =
-          score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
-    record.pose = refine_rigid(matches, record.found.selected);
-    if (truth && record.pose.target_from_source)
-      record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
+    judge(record, matches, truth);
   } catch (const std::exception& error) {
     record.failure = *error.what() ? error.what() : "no reason given";
   }

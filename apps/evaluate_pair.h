@@ -32,7 +32,7 @@ struct MethodRecord {
   std::string failure;        ///< why the method gave no answer; empty if it did
   bool is_too_large = false;  ///< it was not asked, since it would need more memory than it may
   GroupingResult found;
-  double time_ms = 0;                  ///< median of the timed calls, the grouping alone
+  std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
   std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
@@ -50,6 +50,10 @@ TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet&
 
 /// Why a method may not be asked for so many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
 std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit);
+
+/// What a perfect grouper and none at all would leave to the refinement: "oracle" selects all right matches, "floor" all
+/// matches. Scored, refined and judged as the methods are, without a time.
+std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth);
 
 /// Groups, scores, refines and judges; a method that refuses the table, or needs more bytes than the limit, is a record
 /// of that.

@@ -262,15 +262,16 @@ std::string fixed(std::optional<double> value, int decimals) {
   return text;
 }
 
-std::string methods_text(const std::vector<MethodRecord>& records) {
+std::string methods_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
   TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr",
                    "RMSE pr", "status"});
-  for (const MethodRecord& record : records) {
-    std::vector<std::string> row{record.method};
-    for (const Cell& cell : cells(record)) row.push_back(fixed(cell.value, cell.decimals));
-    row.push_back(record.status());
-    table.add(row);
-  }
+  for (const auto* part : {&records, &bounds})
+    for (const MethodRecord& record : *part) {
+      std::vector<std::string> row{record.method};
+      for (const Cell& cell : cells(record)) row.push_back(fixed(cell.value, cell.decimals));
+      row.push_back(record.status());
+      table.add(row);
+    }
   return table.str();
 }
 

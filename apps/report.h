@@ -45,8 +45,8 @@ class TextTable {
 /// A number with so many decimals; empty if absent.
 std::string fixed(std::optional<double> value, int decimals);
 
-/// The table of a pair, one row a method.
-std::string methods_text(const std::vector<MethodRecord>& records);
+/// The table of a pair, one row a method, and below them those of the bounds.
+std::string methods_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
 /// The same for scripts: exact numbers, empty where undefined.
 std::string methods_csv(const std::vector<MethodRecord>& records);
 

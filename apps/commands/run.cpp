@@ -50,6 +50,7 @@ struct PairRun {
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
+  std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the floor
   std::vector<bool> labels;                  ///< with a truth: which matches are right
   std::optional<FrameRepeatability> frames;  ///< with a truth
 
@@ -60,11 +61,12 @@ struct PairRun {
 };
 
 Json to_json(const PairRun& run, const Settings& settings) {
-  Json methods = Json::array(), options = Json::object();
+  Json methods = Json::array(), options = Json::object(), bounds = Json::array();
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     methods.push_back(corral::to_json(run.records[i]));
     options[run.methods[i]] = corral::to_json(run.groupers[i].options);
   }
+  for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));
   return {{"source", settings.source},
           {"target", settings.target},
           {"resolution", run.pair.report.resolution},
@@ -72,6 +74,7 @@ Json to_json(const PairRun& run, const Settings& settings) {
           {"true_matches", json_or_null(run.true_matches())},
           {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
           {"methods", methods},
+          {"bounds", run.truth ? bounds : Json(nullptr)},
           {"details",
            {{"matching", corral::to_json(settings.match)},
             {"threshold_pr", settings.threshold_pr},
@@ -129,6 +132,7 @@ PairRun evaluate(const Settings& settings) {
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
   }
+  if (run.truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
   return run;
 }
 
@@ -158,7 +162,7 @@ int run_pair(Settings settings) {
   if (settings.json)
     put("", to_json(run, settings));
   else
-    put("", heading(run, settings) + methods_text(run.records));
+    put("", heading(run, settings) + methods_text(run.records, run.bounds));
   const bool failed =
       std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
   return failed ? kPartial : kOk;
@@ -185,6 +189,9 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);
   command->footer(
+      "With a truth, the row 'oracle' (all right matches) shows what a perfect grouper would do for the pair, and "
+      "'floor'\n"
+      "(all matches) what none at all would.\n"
       "Examples:\n  corral run model.ply scene.ply --truth truth.txt\n"
       "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
   command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });

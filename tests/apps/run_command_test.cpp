@@ -76,8 +76,28 @@ TEST(Run, TheTableHasARowPerMethod) {
   EXPECT_THAT(outcome.err, AllOf(StartsWith("source: 2562 points"), HasSubstr("\ntarget: "), HasSubstr("\npair: pr ")));
   EXPECT_THAT(outcome.out,
               AllOf(StartsWith("model.ply -> copy.ply: "), HasSubstr("right within 4.0 pr"), HasSubstr("precision")));
-  EXPECT_EQ(lines_in(outcome.out), 2 + groupers().size());
+  EXPECT_EQ(lines_in(outcome.out), 4 + groupers().size());
   for (const std::string& name : method_names()) EXPECT_THAT(outcome.out, HasSubstr("\n" + name + " "));
+  EXPECT_EQ(lines_in(place.corral("run model.ply copy.ply").out), 2 + groupers().size());
+}
+
+TEST(Run, OracleAndFloorBoundTheMethods) {
+  const Workplace place;
+  place.put_pair();
+  const auto json = place.corral("run model.ply copy.ply --truth truth.txt --json").json();
+  ASSERT_EQ(json["bounds"].size(), 2U);
+  const auto oracle = json["bounds"][0], floor = json["bounds"][1];
+  EXPECT_EQ(oracle["method"], "oracle");
+  EXPECT_EQ(oracle["selected"], json["true_matches"]);
+  EXPECT_EQ(oracle["precision"], 1);
+  EXPECT_EQ(oracle["recall"], 1);
+  EXPECT_TRUE(oracle["time_ms"].is_null());
+  EXPECT_EQ(oracle["status"], "refined");
+  EXPECT_EQ(floor["method"], "floor");
+  EXPECT_EQ(floor["selected"], json["matches"]);
+  EXPECT_EQ(floor["recall"], 1);
+  EXPECT_LT(oracle["rotation_error_deg"], 3);
+  EXPECT_TRUE(place.corral("run model.ply copy.ply --json").json()["bounds"].is_null());
 }
 
 TEST(Run, TheFolderAgreesWithTheSingleCommands) {
