@@ -9,6 +9,7 @@
 #include "grouping/registry.h"
 #include "kernel/evaluation.h"
 #include "refine/refine_rigid.h"
+#include "refine/refine_surface.h"
 
 namespace corral {
 
@@ -35,7 +36,9 @@ struct MethodRecord {
   std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
-  std::optional<PoseErrors> errors;  ///< of the refined pose, with a truth
+  std::optional<PoseErrors> errors;        ///< of the refined pose, with a truth
+  std::optional<RefinedSurface> dense;     ///< from the refined pose, where it was asked for
+  std::optional<PoseErrors> dense_errors;  ///< of its pose, with a truth
 
   /// "refined", "not converged" (a pose that was still moving), why there is no pose, "too large: ..." or "failed: ...".
   std::string status() const;

@@ -94,6 +94,57 @@ const std::vector<std::string> kColumns = {"method",  "selected", "precision",  
                                            "f1",      "time_ms",  "rotation_error_deg", "translation_error_pr",
                                            "rmse_pr", "status"};
 
+/// The same for the dense refinement.
+std::vector<Cell> dense_cells(const MethodRecord& record) {
+  std::optional<double> overlap_before, overlap, rms_before, rms, rotation, translation, rmse;
+  if (record.dense) {
+    overlap_before = record.dense->before.overlap, rms_before = record.dense->before.rms_pr;
+    overlap = record.dense->after.overlap, rms = record.dense->after.rms_pr;
+  }
+  if (record.dense_errors) {
+    rotation = record.dense_errors->rotation_error_deg;
+    translation = record.dense_errors->translation_error_pr;
+    if (record.dense_errors->points) rmse = record.dense_errors->points->rmse_pr;
+  }
+  return {{overlap_before, 3}, {overlap, 3}, {rms_before, 3}, {rms, 3}, {rotation, 4}, {translation, 4}, {rmse, 4}};
+}
+
+std::string dense_status(const MethodRecord& record) {
+  return record.dense ? to_text(record.dense->status) : "no pose to begin with";
+}
+
+const std::vector<std::string> kDenseColumns = {"method",
+                                                "overlap_before",
+                                                "overlap",
+                                                "residual_before_pr",
+                                                "residual_pr",
+                                                "rotation_error_deg",
+                                                "translation_error_pr",
+                                                "rmse_pr",
+                                                "status"};
+
+/// Texts between commas, on a line; what a text holds that would end its field is replaced.
+std::string csv_line(const std::string& first, const std::vector<Cell>& numbers, std::string last) {
+  std::string line = first;
+  for (const Cell& cell : numbers) line += "," + (cell.value ? to_text(*cell.value) : "");
+  std::replace_if(
+      last.begin(), last.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
+  return line + "," + last + "\n";
+}
+
+std::string csv_header(const std::vector<std::string>& columns) {
+  std::string text;
+  for (const std::string& column : columns) text += (text.empty() ? "" : ",") + column;
+  return text + "\n";
+}
+
+std::vector<std::string> text_row(const std::string& first, const std::vector<Cell>& numbers, const std::string& last) {
+  std::vector<std::string> row{first};
+  for (const Cell& cell : numbers) row.push_back(fixed(cell.value, cell.decimals));
+  row.push_back(last);
+  return row;
+}
+
 }  // namespace
 
 Json to_json(const RigidTransform& transform) {
@@ -179,6 +230,12 @@ Json to_json(const MethodRecord& record) {
   for (std::size_t i = 0; i < values.size(); ++i) json[kColumns[i + 1]] = json_or_null(values[i].value);
   if (values[0].value) json["selected"] = record.found.selected.size();
   json["status"] = record.status();
+  if (!record.dense) return json;
+  const std::vector<Cell> dense = dense_cells(record);
+  for (std::size_t i = 0; i < dense.size(); ++i) json["dense"][kDenseColumns[i + 1]] = json_or_null(dense[i].value);
+  json["dense"]["condition"] = record.dense->condition;
+  json["dense"]["pose"] = record.dense->target_from_source ? to_json(*record.dense->target_from_source) : Json(nullptr);
+  json["dense"]["status"] = dense_status(record);
   return json;
 }
 
@@ -266,27 +323,28 @@ std::string methods_text(const std::vector<MethodRecord>& records, const std::ve
   TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr",
                    "RMSE pr", "status"});
   for (const auto* part : {&records, &bounds})
-    for (const MethodRecord& record : *part) {
-      std::vector<std::string> row{record.method};
-      for (const Cell& cell : cells(record)) row.push_back(fixed(cell.value, cell.decimals));
-      row.push_back(record.status());
-      table.add(row);
-    }
+    for (const MethodRecord& record : *part) table.add(text_row(record.method, cells(record), record.status()));
   return table.str();
 }
 
 std::string methods_csv(const std::vector<MethodRecord>& records) {
-  std::string text;
-  for (const std::string& column : kColumns) text += (text.empty() ? "" : ",") + column;
-  text += "\n";
-  for (const MethodRecord& record : records) {
-    text += record.method;
-    for (const Cell& cell : cells(record)) text += "," + (cell.value ? to_text(*cell.value) : "");
-    std::string status = record.status();  // a message may hold what would end the field
-    std::replace_if(
-        status.begin(), status.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-    text += "," + status + "\n";
-  }
+  std::string text = csv_header(kColumns);
+  for (const MethodRecord& record : records) text += csv_line(record.method, cells(record), record.status());
+  return text;
+}
+
+std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
+  TextTable table({"method", "overlap before", "overlap", "residual before pr", "residual pr", "rot err deg",
+                   "transl err pr", "RMSE pr", "status"});
+  for (const auto* part : {&records, &bounds})
+    for (const MethodRecord& record : *part)
+      table.add(text_row(record.method, dense_cells(record), dense_status(record)));
+  return table.str();
+}
+
+std::string dense_csv(const std::vector<MethodRecord>& records) {
+  std::string text = csv_header(kDenseColumns);
+  for (const MethodRecord& record : records) text += csv_line(record.method, dense_cells(record), dense_status(record));
   return text;
 }
 

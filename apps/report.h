@@ -50,6 +50,10 @@ std::string methods_text(const std::vector<MethodRecord>& records, const std::ve
 /// The same for scripts: exact numbers, empty where undefined.
 std::string methods_csv(const std::vector<MethodRecord>& records);
 
+/// What the dense refinement made of each pose, in tables of its own.
+std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
+std::string dense_csv(const std::vector<MethodRecord>& records);
+
 /// Indented, on lines of its own; bytes that are no UTF-8 (file names may hold any) are replaced.
 std::string json_text(const Json& json);
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/commands/commands.h"
+#include "apps/dense_refinement.h"
 #include "apps/progress.h"
 #include "apps/report.h"
 #include "io/file.h"
@@ -24,7 +25,7 @@ struct Settings {
   int repeat = 1;
   std::uint64_t memory_limit = 0;
   MatchSettings match;
-  bool json = false, verbose = false;
+  bool dense = false, json = false, verbose = false;
 };
 
 /// "all" or names between commas, each once.
@@ -90,6 +91,7 @@ void write_folder(const PairRun& run, const Settings& settings) {
                                  {folder + "match_report.json", json_text(corral::to_json(run.pair.report))},
                                  {folder + "methods.csv", methods_csv(run.records)},
                                  {folder + "run.json", json_text(to_json(run, settings))}};
+  if (settings.dense) files.push_back({folder + "dense.csv", dense_csv(run.records)});
   for (const MethodRecord& record : run.records) {
     if (!record.failure.empty()) continue;
     files.push_back({folder + "group_" + record.method + ".csv",
@@ -100,6 +102,7 @@ void write_folder(const PairRun& run, const Settings& settings) {
       files.push_back({folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source)});
   }
   write_files(files);
+  if (!settings.dense) remove_file(folder + "dense.csv");
   for (const Grouper& grouper : groupers())
     for (const std::string& name :
          {"group_" + grouper.name + ".csv", "refine_" + grouper.name + ".json", "pose_" + grouper.name + ".txt"}) {
@@ -118,7 +121,7 @@ PairRun evaluate(const Settings& settings) {
     make_folder(settings.output);
     check_writable(settings.output + "/run.json");
   }
-  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()));
+  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense);
   run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   if (run.truth) {
     progress.begin("overlap");
@@ -133,6 +136,12 @@ PairRun evaluate(const Settings& settings) {
                                           static_cast<double>(settings.memory_limit)));
   }
   if (run.truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
+  if (settings.dense) {
+    progress.begin("dense refinement");
+    DenseRefinement dense(source, target, run.pair.report.resolution);
+    dense.refine(run.records, run.truth);
+    dense.refine(run.bounds, run.truth);
+  }
   return run;
 }
 
@@ -162,7 +171,9 @@ int run_pair(Settings settings) {
   if (settings.json)
     put("", to_json(run, settings));
   else
-    put("", heading(run, settings) + methods_text(run.records, run.bounds));
+    put("",
+        heading(run, settings) + methods_text(run.records, run.bounds) +
+            (settings.dense ? "\ndense refinement, points to planes:\n" + dense_text(run.records, run.bounds) : ""));
   const bool failed =
       std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
   return failed ? kPartial : kOk;
@@ -184,6 +195,8 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")
       ->capture_default_str();
+  command->add_flag("--dense", settings->dense,
+                    "Lay the whole surfaces on each other from every pose, reported in a table of its own");
   add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");

@@ -81,6 +81,28 @@ TEST(Run, TheTableHasARowPerMethod) {
   EXPECT_EQ(lines_in(place.corral("run model.ply copy.ply").out), 2 + groupers().size());
 }
 
+TEST(Run, DenseRefinementHasATableOfItsOwn) {
+  const Workplace place;
+  place.put_pair();
+  const auto json =
+      place.corral("run model.ply copy.ply --truth truth.txt --methods gc,nnsr --dense --json -o out").json();
+  for (const auto& method : json["methods"]) {
+    const auto dense = method["dense"];
+    EXPECT_EQ(dense["status"], "refined");
+    EXPECT_GT(dense["overlap"], 0.99);
+    EXPECT_LE(dense["residual_pr"], dense["residual_before_pr"]);
+    EXPECT_LT(dense["rotation_error_deg"], 0.5);
+    EXPECT_EQ(dense["pose"].size(), 4U);
+  }
+  EXPECT_THAT(place.text("out/dense.csv"), StartsWith("method,overlap_before,overlap,"));
+  EXPECT_EQ(lines_in(place.text("out/dense.csv")), 3U);
+  const Outcome table = place.corral("run model.ply copy.ply --methods gc --dense");
+  EXPECT_THAT(table.out, HasSubstr("\ndense refinement, points to planes:\nmethod  overlap before"));
+  EXPECT_EQ(lines_in(table.out), 7U);
+  ASSERT_EQ(place.corral("run model.ply copy.ply --methods gc -o out").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(place / "out/dense.csv")) << "left by an earlier run";
+}
+
 TEST(Run, OracleAndFloorBoundTheMethods) {
   const Workplace place;
   place.put_pair();

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "apps/evaluate_pair.h"
+#include "kernel/surface/mesh.h"
+#include "kernel/surface/nearest_points.h"
+
+namespace corral {
+
+/// Lays the source mesh on the target mesh from the poses of the groupers. What the target needs for it is made once. The
+/// meshes must outlive this.
+class DenseRefinement {
+ public:
+  /// `resolution`: mesh units per pr.
+  DenseRefinement(const Mesh& source, const Mesh& target, double resolution);
+
+  /// Fills `dense` of every record that has a pose, and with a truth its errors.
+  void refine(std::vector<MethodRecord>& records, const std::optional<PairTruth>& truth);
+
+ private:
+  const Mesh &source_, &target_;
+  double resolution_;
+  Points normals_;
+  PointTree tree_;
+  NearestTracker tracker_;
+};
+
+}  // namespace corral
