@@ -122,16 +122,19 @@ Indices select_in_box(const std::vector<Vote>& votes, int bins, double resolutio
     cells.push_back(cell);
   }
   const std::uint64_t peak = accumulator.fullest();
-  const auto distance = [count](std::uint64_t a, std::uint64_t b, std::uint64_t step) {
-    const auto i = static_cast<std::int64_t>(a / step % count), j = static_cast<std::int64_t>(b / step % count);
-    return std::abs(i - j);
-  };
-  const std::uint64_t reach = count * count;  // cells farther apart in number share no face
+  std::array<std::uint64_t, 7> winners;  // the peak itself where there is no neighbour
+  winners.fill(peak);
+  std::uint64_t step = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis, step *= count) {
+    const std::uint64_t place = peak / step % count;
+    if (place > 0) winners[2 * axis] = peak - step;
+    if (place + 1 < count) winners[2 * axis + 1] = peak + step;
+  }
   Indices rows;
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    if (cells[i] + reach < peak || peak + reach < cells[i]) continue;
-    if (distance(cells[i], peak, 1) + distance(cells[i], peak, count) + distance(cells[i], peak, reach) <= 1)
-      rows.push_back(votes[i].row);
+    bool wins = false;
+    for (const std::uint64_t winner : winners) wins |= cells[i] == winner;
+    if (wins) rows.push_back(votes[i].row);
   }
   return rows;
 }
