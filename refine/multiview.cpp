@@ -13,12 +13,15 @@
 #include <numeric>
 
 #include "kernel/error.h"
+#include "kernel/random.h"
 #include "kernel/types.h"
 
 namespace corral {
 namespace {
 
 constexpr int kMostRounds = 50;
+constexpr int kTrees = 500;
+constexpr int kNobody = -1;
 
 /// How far two motions from view a part its points, root mean square, in mesh units.
 double separation(const RigidTransform& one, const RigidTransform& other, const View& view) {
@@ -79,7 +82,7 @@ class Alignment {
 
   MultiviewAlignment run() {
     count_loops();
-    plant_tree();
+    choose_tree();
     std::vector<bool> votes(pairs_.size(), true);  // the loss bears with the wrong ones at first
     bool settled = false;
     for (int round = 0; round < kMostRounds && !settled; ++round) {
@@ -130,35 +133,68 @@ class Alignment {
       }
   }
 
-  /// Poses from the most trusted pairs that connect all views.
-  void plant_tree() {
+  /// Poses from a tree of pairs that connects all views: of the tree of the most trusted pairs and many random ones, which
+  /// prefer pairs of closed loops, the one that the most weight of pairs agrees with.
+  void choose_tree() {
     std::vector<std::size_t> order(pairs_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-      if (judged_[i].closed_loops != judged_[j].closed_loops) return judged_[i].closed_loops > judged_[j].closed_loops;
-      return pairs_[i].weight > pairs_[j].weight;
-    });
+    std::vector<double> keys;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) keys.push_back(-judged_[i].closed_loops);
+    RandomStream random(1);
+    double best_weight = -1;
+    std::vector<RigidTransform> best;
+    for (int tree = 0; tree < kTrees; ++tree) {
+      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+      const double weight = plant_tree(order);
+      if (weight > best_weight) best_weight = weight, best = poses_;
+      for (std::size_t i = 0; i < pairs_.size(); ++i)
+        keys[i] = -std::log(1 - random.uniform()) / (1 + judged_[i].closed_loops);
+    }
+    poses_ = best;
+  }
+
+  /// Poses from the first pairs in an order that connect all views. Returns the weight of the pairs that agree with them; a
+  /// pair may be off by the limit times the root of the pairs of the tree that lead around.
+  double plant_tree(const std::vector<std::size_t>& order) {
     parts_.emplace(views_.size());
     std::vector<std::vector<std::size_t>> branches(views_.size());
     for (const std::size_t i : order)
       if (parts_->join(pairs_[i].a, pairs_[i].b))
         for (const int end : {pairs_[i].a, pairs_[i].b}) branches[static_cast<std::size_t>(end)].push_back(i);
     poses_.assign(views_.size(), {});
-    std::vector<bool> is_placed(views_.size(), false);
+    Indices parent(views_.size(), kNobody), depth(views_.size(), kNobody);
     for (std::size_t root = 0; root < views_.size(); ++root) {
-      if (is_placed[root]) continue;
-      is_placed[root] = true;
+      if (depth[root] != kNobody) continue;
+      depth[root] = 0;
       Indices reached{static_cast<int>(root)};
-      for (std::size_t next = 0; next < reached.size(); ++next)
-        for (const std::size_t i : branches[static_cast<std::size_t>(reached[next])]) {
+      for (std::size_t next = 0; next < reached.size(); ++next) {
+        const auto from = static_cast<std::size_t>(reached[next]);
+        for (const std::size_t i : branches[from]) {
           const ViewPair& pair = pairs_[i];
-          const int from = reached[next], to = pair.a == from ? pair.b : pair.a;
-          if (is_placed[static_cast<std::size_t>(to)]) continue;
-          is_placed[static_cast<std::size_t>(to)] = true;
-          pose(to) = pose(from) * (pair.a == from ? pair.b_from_a.inverse() : pair.b_from_a);
-          reached.push_back(to);
+          const bool is_forward = pair.a == reached[next];
+          const auto to = static_cast<std::size_t>(is_forward ? pair.b : pair.a);
+          if (depth[to] != kNobody) continue;
+          depth[to] = depth[from] + 1;
+          parent[to] = static_cast<int>(from);
+          poses_[to] = poses_[from] * (is_forward ? pair.b_from_a.inverse() : pair.b_from_a);
+          reached.push_back(static_cast<int>(to));
         }
+      }
     }
+    const auto steps_between = [&](int a, int b) {
+      int steps = 0;
+      for (; a != b; ++steps) {
+        int& lower = depth[static_cast<std::size_t>(a)] > depth[static_cast<std::size_t>(b)] ? a : b;
+        lower = parent[static_cast<std::size_t>(lower)];
+      }
+      return steps;
+    };
+    double weight = 0;
+    for (const ViewPair& pair : pairs_) {
+      const double error = separation(pair.b_from_a, pose(pair.b).inverse() * pose(pair.a), view(pair.a));
+      if (error <= limit_ * std::sqrt(steps_between(pair.a, pair.b))) weight += pair.weight;
+    }
+    return weight;
   }
 
   /// Measures each pair by the present poses: within the limit or not.

@@ -61,10 +61,12 @@ struct MultiviewAlignment {
 /// over one pose per view. The pair (a, b) predicts where the points of a lie in b; theta is the angle between prediction
 /// and alignment, d what lies between the two images of the center of a, r the radius of a, rho(s) = log(1 + s).
 ///
-/// The start is a tree of the pairs with the most closed loops of three (then the largest weight, then the first). Pairs
-/// beyond the limit lose their vote, and the rest are aligned again, until no verdict changes.
-/// Source    [huber2003fully] for verdicts by consistency, [choi2015robust] for a pose graph with switched pairs.
-/// Cost      O(pairs^2) for the loops. Ceres, one thread. Deterministic: same input, same bytes.
+/// The start is the tree of pairs that the most weight of all pairs agrees with, among 500: that of the pairs with the most
+/// closed loops of three, and random ones that prefer such pairs. Pairs beyond the limit lose their vote, and the rest are
+/// aligned again, until no verdict changes.
+/// Source    [govindu2006robustness] for random trees, [huber2003fully] for verdicts by consistency, [choi2015robust] for a
+///           pose graph with switched pairs.
+/// Cost      O(pairs^2) for the loops, 500 trees. Ceres, one thread. Deterministic: same input, same bytes.
 /// Throws    InvalidInput: option or weight out of range, a pair of no or of one view, a pose that is not rigid.
 /// Departs   One length judges a pair, not an angle and a distance; a pair that fails is left out, not switched by a variable.
 MultiviewAlignment align_views(const std::vector<View>& views, const std::vector<ViewPair>& pairs, double resolution,

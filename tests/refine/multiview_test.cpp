@@ -110,6 +110,26 @@ TEST(AlignViews, NamesEveryWrongPairOfFive) {
   }
 }
 
+TEST(AlignViews, WhereNoThreeViewsArePairedTheTreeOfMostAgreementLeads) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomStream random(seed);
+    Scene scene = scene_without_pairs(16, random);  // the corners of a cube of four dimensions, paired along its edges
+    for (int a = 0; a < 16; ++a)
+      for (int bit = 1; bit < 16; bit *= 2)
+        if (a < (a ^ bit)) scene.add_pair(a, a ^ bit, scene.truth(a, a ^ bit), false);
+    for (const std::size_t i : {0U, 13U, 21U}) {  // the first among them: nothing else tells them apart
+      scene.pairs[i].b_from_a = {random.rotation(), 300 * random.direction()};
+      scene.is_wrong[i] = true;
+    }
+    const MultiviewAlignment aligned = align_views(scene.views, scene.pairs, kResolution);
+    for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+      EXPECT_EQ(aligned.pairs[i].loops, 0);
+      EXPECT_EQ(aligned.pairs[i].verdict == PairVerdict::Contradicts, scene.is_wrong[i])
+          << "seed " << seed << " pair " << i;
+    }
+  }
+}
+
 TEST(AlignViews, ManyPairsAreBetterThanATree) {
   double of_all = 0, of_tree = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
