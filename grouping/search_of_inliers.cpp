@@ -124,7 +124,8 @@ class Voting {
     const auto end = static_cast<float>(last * last * (1 + 1e-6));
     const int certain = mark_between(squared_.data(), size, nearer, end, marks_.data());
     undecided_.clear();
-    visit_marks(marks_, [&](int other) { undecided_.emplace_back(point_distance(matches_.source_points, row, other), other); });
+    visit_marks(marks_,
+                [&](int other) { undecided_.emplace_back(point_distance(matches_.source_points, row, other), other); });
     std::sort(undecided_.begin(), undecided_.end());
     undecided_.resize(static_cast<std::size_t>(count - certain));
     return nearer;

@@ -10,7 +10,6 @@ namespace corral {
 
 // Features as short rows of floats whose distances are lower bounds. Only sources include this.
 
-
 constexpr int kCoarseNumbers = 32;  ///< directions, the length of the rest, 1
 constexpr int kFineNumbers = 64;    ///< the same with more directions; the first are those of the coarse row
 

@@ -76,7 +76,8 @@ std::size_t add_row(RatioTable& ratios, const NaturalTable& table, const Grouper
   const std::string count = std::to_string(table.matches.size());
   char inliers[16];
   std::snprintf(inliers, sizeof inliers, "%.3f", table.inlier_ratio);
-  const std::size_t row = ratios.add_row({{table.scene, count, inliers, grouper.name}, peer ? peer->library : "", 0, 0});
+  const std::size_t row =
+      ratios.add_row({{table.scene, count, inliers, grouper.name}, peer ? peer->library : "", 0, 0});
 
   const bool is_long = grouper.name == "st" && table.matches.size() >= 5000;
   const int repetitions = is_long ? 1 : 5;

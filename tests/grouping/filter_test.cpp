@@ -35,7 +35,8 @@ std::vector<CorrespondenceSet> tables() {
   far.source_points.array() += 3e15;  // where doubles round residuals to halves
   far.target_points.array() -= 2e15;
   all.push_back(far);
-  for (const double factor : {1e-30, 1e30, 1e-140, 1e-170, 1e200}) all.push_back(scaled(synthetic(60, 0.5, 6).matches, factor));
+  for (const double factor : {1e-30, 1e30, 1e-140, 1e-170, 1e200})
+    all.push_back(scaled(synthetic(60, 0.5, 6).matches, factor));
   CorrespondenceSet outlier = synthetic(60, 0.5, 7).matches;
   outlier.target_points(3, 0) = 1e9;
   all.push_back(outlier);
@@ -149,8 +150,9 @@ TEST(Filter, ResidualsAreBracketed) {
         const PoseFilter filter(table, pose, tolerance);
         int expected = 0;
         for (int row = 0; row < matches.size(); ++row)
-          expected += (pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose())
-                          .norm() < tolerance;
+          expected +=
+              (pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose()).norm() <
+              tolerance;
         const PoseFilter poses[kPoseTile] = {filter, filter, filter, filter};
         int near_plane[kPoseTile];
         count_near_first_plane(table, poses, near_plane);
@@ -168,9 +170,10 @@ TEST(Filter, ResidualsAreBracketed) {
         int agreeing = 0;
         for (int row = 0; row < matches.size(); ++row) {
           const PairDistances distances = pair_distances(matches, 0, row);
-          agreeing += rigidity_ratio(distances.source, distances.target) > 0 &&
-                      (pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose())
-                              .norm() < tolerance;
+          agreeing +=
+              rigidity_ratio(distances.source, distances.target) > 0 &&
+              (pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose()).norm() <
+                  tolerance;
         }
         EXPECT_LE(votes.certain, agreeing);
         EXPECT_GE(votes.possible, agreeing);
