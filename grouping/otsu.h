@@ -31,7 +31,10 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// Throws    InvalidInput if a score is not finite.
 Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule);
 
-/// The most bytes that it holds for so many scores: a sorted copy, the classes and the answer, some as they grow.
-constexpr double otsu_memory(int scores) { return 72.0 * scores + 4096; }
+/// The most bytes that it holds for so many scores: the answer as it grows, and of the exact rule a sorted copy and the
+/// classes.
+constexpr double otsu_memory(int scores, OtsuRule rule) {
+  return (rule == OtsuRule::Exact ? 72.0 : 16.0) * scores + 4096;
+}
 
 }  // namespace corral

@@ -154,8 +154,4 @@ Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix) {
   return answer;
 }
 
-Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix) {
-  return principal_eigenvector(DenseGraph(matrix));
-}
-
 }  // namespace corral

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <utility>
 
 #include "kernel/types.h"
 
@@ -53,7 +54,6 @@ class DenseGraph : public GraphMatrix {
 /// Each part is solved by restarted Lanczos iteration with full orthogonalisation until |Mx - lambda x| <= 1e-12 lambda,
 /// or until rounding lets it fall no further. A matrix without a positive entry: zero.
 Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix);
-Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix);
 
 /// Whether a vector that is this near to the answer (2-norm) will do.
 using WillDo = std::function<bool(const Eigen::VectorXd& approximation, double error)>;

@@ -208,9 +208,9 @@ GroupingResult group_by_search_of_inliers(const CorrespondenceSet& matches, cons
   return result;
 }
 
-double working_memory(int matches, const SearchOfInliersOptions&) {
+double working_memory(int matches, const SearchOfInliersOptions& options) {
   // Two tables, columns of floats and marks, the neighbours that are sorted, votes, ranks and scores, some as they grow.
-  return 2 * FilterTable::memory(matches) + 160.0 * matches + otsu_memory(matches) + 4096;
+  return 2 * FilterTable::memory(matches) + 160.0 * matches + otsu_memory(matches, options.otsu) + 4096;
 }
 
 }  // namespace corral

@@ -7,14 +7,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "refine/rigid_cost.h"
+
 namespace corral {
 namespace {
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
 
 /// S x with S^T S = G. Parameters: a unit quaternion (w, v) and a shift.
 class RootOfGram : public ceres::SizedCostFunction<13, 4, 3> {

@@ -65,6 +65,7 @@ Json to_json(const PairRun& run, const Settings& settings) {
   Json methods = Json::array(), options = Json::object(), bounds = Json::array();
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     methods.push_back(corral::to_json(run.records[i]));
+    if (settings.dense) methods.back().emplace("dense", nullptr);  // where there was no pose to begin with
     options[run.methods[i]] = corral::to_json(run.groupers[i].options);
   }
   for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));

@@ -94,6 +94,9 @@ TEST(Run, DenseRefinementHasATableOfItsOwn) {
     EXPECT_LT(dense["rotation_error_deg"], 0.5);
     EXPECT_EQ(dense["pose"].size(), 4U);
   }
+  write_mesh(place / "flat.ply", testing::grid(20, 20));
+  const auto no_pose = place.corral("run flat.ply flat.ply --methods gc --dense --json").json()["methods"][0];
+  EXPECT_TRUE(no_pose.contains("dense") && no_pose["dense"].is_null());
   EXPECT_THAT(place.text("out/dense.csv"), StartsWith("method,overlap_before,overlap,"));
   EXPECT_EQ(lines_in(place.text("out/dense.csv")), 3U);
   const Outcome table = place.corral("run model.ply copy.ply --methods gc --dense");

@@ -8,15 +8,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 
 #include "grouping/registry.h"
 #include "tests/benchmarks/grouper_peers.h"
 #include "tests/benchmarks/grouper_summary.h"
 #include "tests/benchmarks/natural_tables.h"
+#include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 
 namespace corral::benchmarks {
@@ -24,31 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
-  bool as_csv = false;
-  std::vector<int> sizes{250, 500, 1000, 2000, 5000, 10000};
-  std::vector<std::string> paths;
-};
-
-Arguments parse(int argc, char** argv) {
-  Arguments arguments;
-  for (int i = 1; i < argc; ++i) {
-    const std::string text = argv[i];
-    if (text == "--csv")
-      arguments.as_csv = true;
-    else if (text == "--quick")
-      arguments.sizes = {250, 500, 1000};
-    else
-      arguments.paths.push_back(text);
-  }
-  return arguments;
-}
-
 std::vector<std::string> default_meshes() {
-  const char* data = std::getenv("CORRAL_DATA");
   std::vector<std::string> paths;
   for (const char* name : {"meshes/bunny00.off", "meshes/refined_elephant.off"}) {
-    const fs::path path = fs::path(data ? data : CORRAL_DATA_FOLDER) / name;
+    const fs::path path = fs::path(data_folder(CORRAL_DATA_FOLDER)) / name;
     if (fs::exists(path)) paths.push_back(path.string());
   }
   return paths;
@@ -101,15 +79,17 @@ Case add_case(RatioTable& ratios, const NaturalTable& table, const Grouper& grou
   return {&table, &grouper, *row};
 }
 
-int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  Arguments arguments = parse(argc, argv);
-  if (arguments.paths.empty()) arguments.paths = default_meshes();
-  if (arguments.paths.empty()) {
-    std::cerr << "no mesh: name some, or let apps/quickstart fetch the default data\n";
-    return 2;
-  }
-  const std::vector<NaturalTable> tables = read_tables(arguments.paths, arguments.sizes);
+int run(const Arguments& arguments) {
+  std::vector<int> sizes{250, 500, 1000, 2000, 5000, 10000};
+  std::vector<std::string> paths;
+  for (const std::string& word : arguments.words)
+    if (word == "--quick")
+      sizes = {250, 500, 1000};
+    else
+      paths.push_back(word);
+  if (paths.empty()) paths = default_meshes();
+  if (paths.empty()) return no_mesh();
+  const std::vector<NaturalTable> tables = read_tables(paths, sizes);
   RatioTable ratios({"scene", "n", "inliers", "grouper"}, arguments.as_csv);
   std::vector<Case> cases;
   for (const Grouper& grouper : groupers())
@@ -130,10 +110,5 @@ int run(int argc, char** argv) {
 }  // namespace corral::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return corral::benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "grouper_benchmark: " << error.what() << "\n";
-    return 3;
-  }
+  return corral::benchmarks::run_program("grouper_benchmark", argc, argv, corral::benchmarks::run);
 }

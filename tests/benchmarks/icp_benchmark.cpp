@@ -11,8 +11,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <iostream>
@@ -26,6 +24,7 @@
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
 #include "refine/refine_surface.h"
+#include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 #include "tests/benchmarks/workload.h"
 #ifdef CORRAL_WITH_PCL
@@ -150,22 +149,10 @@ std::deque<Task> read_tasks(const std::vector<std::string>& paths, const fs::pat
   return tasks;
 }
 
-int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  bool as_csv = false;
-  std::vector<std::string> paths;
-  for (int i = 1; i < argc; ++i)
-    if (std::strcmp(argv[i], "--csv") == 0)
-      as_csv = true;
-    else
-      paths.emplace_back(argv[i]);
-  const char* data = std::getenv("CORRAL_DATA");
-  const std::deque<Task> tasks = read_tasks(paths, data ? data : CORRAL_DATA_FOLDER);
-  if (tasks.empty()) {
-    std::cerr << "no mesh: name some, or let apps/quickstart fetch the default data\n";
-    return 2;
-  }
-  RatioTable table({"mesh", "vertices", "residual", "rounds", "ours_rmse_pr", "peer_rmse_pr"}, as_csv);
+int run(const Arguments& arguments) {
+  const std::deque<Task> tasks = read_tasks(arguments.words, data_folder(CORRAL_DATA_FOLDER));
+  if (tasks.empty()) return no_mesh();
+  RatioTable table({"mesh", "vertices", "residual", "rounds", "ours_rmse_pr", "peer_rmse_pr"}, arguments.as_csv);
   for (const Task& task : tasks) add(table, task);
   benchmark::RunSpecifiedBenchmarks(&table);
   return 0;
@@ -175,10 +162,5 @@ int run(int argc, char** argv) {
 }  // namespace corral::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return corral::benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "icp_benchmark: " << error.what() << "\n";
-    return 3;
-  }
+  return corral::benchmarks::run_program("icp_benchmark", argc, argv, corral::benchmarks::run);
 }

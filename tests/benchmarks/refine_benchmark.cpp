@@ -7,14 +7,13 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-#include <cstring>
-#include <iostream>
 #include <memory>
 #include <numeric>
 
 #include "kernel/evaluation.h"
 #include "kernel/synthetic.h"
 #include "refine/refine_rigid.h"
+#include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 
 namespace corral::benchmarks {
@@ -88,10 +87,8 @@ void add_rows(RatioTable& table, int rows) {
   }
 }
 
-int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  const bool as_csv = argc > 1 && std::strcmp(argv[1], "--csv") == 0;
-  RatioTable table({"rows", "loss"}, as_csv);
+int run(const Arguments& arguments) {
+  RatioTable table({"rows", "loss"}, arguments.as_csv);
   for (const int rows : {100, 500, 2000, 10000}) add_rows(table, rows);
   benchmark::RunSpecifiedBenchmarks(&table);
   return 0;
@@ -101,10 +98,5 @@ int run(int argc, char** argv) {
 }  // namespace corral::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return corral::benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "refine_benchmark: " << error.what() << "\n";
-    return 3;
-  }
+  return corral::benchmarks::run_program("refine_benchmark", argc, argv, corral::benchmarks::run);
 }

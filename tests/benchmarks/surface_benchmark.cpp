@@ -6,13 +6,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-#include <cstring>
 #include <functional>
-#include <iostream>
 #include <memory>
 
 #include "tests/benchmarks/our_stages.h"
+#include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 #include "tests/benchmarks/workload.h"
 #include "tests/peers/flann_matching.h"
@@ -132,22 +130,10 @@ void add_stages(Registry& registry, Workload& load) {
   registry.add(load, "whole-match", whole, "pcl", theirs.whole_match);
 }
 
-int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  bool as_csv = false;
-  std::vector<std::string> paths;
-  for (int i = 1; i < argc; ++i)
-    if (std::strcmp(argv[i], "--csv") == 0)
-      as_csv = true;
-    else
-      paths.emplace_back(argv[i]);
-  const char* data = std::getenv("CORRAL_DATA");
-  std::vector<Workload> workloads = read_workloads(paths, data ? data : CORRAL_DATA_FOLDER);
-  if (workloads.empty()) {
-    std::cerr << "no mesh: name some, or let apps/quickstart fetch the default data\n";
-    return 2;
-  }
-  RatioTable table({"mesh", "vertices", "stage"}, as_csv);
+int run(const Arguments& arguments) {
+  std::vector<Workload> workloads = read_workloads(arguments.words, data_folder(CORRAL_DATA_FOLDER));
+  if (workloads.empty()) return no_mesh();
+  RatioTable table({"mesh", "vertices", "stage"}, arguments.as_csv);
   Registry registry(table);
   for (Workload& load : workloads) add_stages(registry, load);
   benchmark::RunSpecifiedBenchmarks(&table);
@@ -158,10 +144,5 @@ int run(int argc, char** argv) {
 }  // namespace corral::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return corral::benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "surface_benchmark: " << error.what() << "\n";
-    return 3;
-  }
+  return corral::benchmarks::run_program("surface_benchmark", argc, argv, corral::benchmarks::run);
 }

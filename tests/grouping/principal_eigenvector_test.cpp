@@ -24,6 +24,10 @@ Eigen::MatrixXd random_connected(int size, double density, std::uint64_t seed, b
   return matrix;
 }
 
+Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& matrix) {
+  return corral::principal_eigenvector(DenseGraph(matrix));
+}
+
 Eigen::VectorXd dense_answer(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
   return solver.eigenvectors().rightCols<1>().cwiseAbs();

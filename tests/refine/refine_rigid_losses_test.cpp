@@ -11,11 +11,14 @@
 
 #include "kernel/random.h"
 #include "refine/refine_rigid.h"
+#include "tests/refine/refine_problems.h"
 #include "tests/support/table_changes.h"
 #include "tests/support/tables.h"
 
 namespace corral {
 namespace {
+
+using testing::problem;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -36,16 +39,6 @@ RefinedPose refine(const CorrespondenceSet& matches, RobustLoss loss, double sca
   options.loss = loss;
   options.loss_scale_pr = scale_pr;
   return refine_rigid(matches, first_rows(matches.size()), options, start);
-}
-
-SyntheticProblem problem(int matches, double inlier_ratio, double noise_pr, std::uint64_t seed, double resolution = 1) {
-  SyntheticOptions options;
-  options.matches = matches;
-  options.inlier_ratio = inlier_ratio;
-  options.noise_pr = noise_pr;
-  options.seed = seed;
-  options.resolution = resolution;
-  return make_synthetic_problem(options);
 }
 
 /// |A - B| over sqrt 2: the angle between two rotations that are close.

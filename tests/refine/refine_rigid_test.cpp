@@ -11,27 +11,15 @@
 
 #include "kernel/error.h"
 #include "kernel/random.h"
+#include "tests/refine/refine_problems.h"
 #include "tests/support/table_changes.h"
 #include "tests/support/tables.h"
 
 namespace corral {
 namespace {
 
-Indices all_rows(const CorrespondenceSet& matches) {
-  Indices rows(static_cast<std::size_t>(matches.size()));
-  std::iota(rows.begin(), rows.end(), 0);
-  return rows;
-}
-
-SyntheticProblem problem(int matches, double inlier_ratio, double noise_pr, std::uint64_t seed, double resolution = 1) {
-  SyntheticOptions options;
-  options.matches = matches;
-  options.inlier_ratio = inlier_ratio;
-  options.noise_pr = noise_pr;
-  options.seed = seed;
-  options.resolution = resolution;
-  return make_synthetic_problem(options);
-}
+using testing::all_rows;
+using testing::problem;
 
 RefinedPose refine(const CorrespondenceSet& matches, const RefineOptions& options = {}) {
   return refine_rigid(matches, all_rows(matches), options);
