@@ -5,9 +5,13 @@
 
 #include "apps/report.h"
 #include "apps/stopwatch.h"
+#include "kernel/surface/visibility.h"
 
 namespace corral {
 namespace {
+
+/// A source vertex is in the overlap if its true image has a target vertex this near.
+constexpr double kOverlapPr = 4;
 
 /// Scores what was found, and refines and judges its pose.
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
@@ -15,16 +19,25 @@ void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::op
     record.score =
         score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
   record.pose = refine_rigid(matches, record.found.selected);
+  if (truth && record.pose.initial)
+    record.initial_errors = pose_errors(*record.pose.initial, *truth, matches.resolution);
   if (truth && record.pose.target_from_source)
     record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
 }
 
 }  // namespace
 
+PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
+                     double resolution, double threshold_pr) {
+  return {target_from_source,
+          overlap_points(source.vertices, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution),
+          threshold_pr};
+}
+
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
   return {rotation_error_deg(estimate, truth.target_from_source),
           translation_error_pr(estimate, truth.target_from_source, resolution),
-          point_error(estimate, truth.target_from_source, truth.overlap, resolution)};
+          point_error(estimate, truth.target_from_source, truth.overlap, resolution), std::nullopt};
 }
 
 std::string MethodRecord::status() const {

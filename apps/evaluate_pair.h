@@ -8,6 +8,7 @@
 
 #include "grouping/registry.h"
 #include "kernel/evaluation.h"
+#include "kernel/surface/mesh.h"
 #include "refine/refine_rigid.h"
 #include "refine/refine_surface.h"
 
@@ -19,11 +20,15 @@ struct PairTruth {
   Points overlap;           ///< source points over which a pose is judged; may be empty
   double threshold_pr = 4;  ///< of a right match
 };
+/// The same with the overlap of the two surfaces. `resolution`: mesh units per pr.
+PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
+                     double resolution, double threshold_pr);
 
 /// A pose against the truth; rmse is absent if there is no point to take it over.
 struct PoseErrors {
   double rotation_error_deg = 0, translation_error_pr = 0;
   std::optional<PointError> points;
+  std::optional<double> add_share;  ///< mean distance of all source vertices, in diameters of the source (ADD)
 };
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
 
@@ -36,9 +41,10 @@ struct MethodRecord {
   std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
-  std::optional<PoseErrors> errors;        ///< of the refined pose, with a truth
-  std::optional<RefinedSurface> dense;     ///< from the refined pose, where it was asked for
-  std::optional<PoseErrors> dense_errors;  ///< of its pose, with a truth
+  std::optional<PoseErrors> initial_errors;  ///< of the least-squares fit to the selection, with a truth
+  std::optional<PoseErrors> errors;          ///< of the refined pose, with a truth
+  std::optional<RefinedSurface> dense;       ///< from the refined pose, where it was asked for
+  std::optional<PoseErrors> dense_errors;    ///< of its pose, with a truth
 
   /// "refined", "not converged" (a pose that was still moving), why there is no pose, "too large: ..." or "failed: ...".
   std::string status() const;

@@ -33,10 +33,10 @@ const std::map<std::string, Room> kRooms = {
     {"kernel/surface", {{"kernel", "kernel/surface"}, {"Eigen", "CGAL", "OpenMesh", "flann", "boost"}}},
     {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
     {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
-    {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen"}}},
+    {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen", "toml++"}}},
     {"apps", {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"}, {"Eigen", "CLI", "nlohmann", "oneapi"}}},
 };
-const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres"};
+const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
 struct Include {

@@ -11,13 +11,9 @@
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"
-#include "kernel/surface/visibility.h"
 
 namespace corral {
 namespace {
-
-/// A source vertex is in the overlap if its true image has a target vertex this near.
-constexpr double kOverlapPr = 4;
 
 struct Settings {
   std::string source, target, truth, methods = "all", output;
@@ -126,8 +122,8 @@ PairRun evaluate(const Settings& settings) {
   run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
   if (run.truth) {
     progress.begin("overlap");
-    run.truth->overlap = overlap_points(source.vertices, PointIndex(target.vertices), run.truth->target_from_source,
-                                        kOverlapPr * run.pair.report.resolution);
+    run.truth =
+        pair_truth(source, target, run.truth->target_from_source, run.pair.report.resolution, settings.threshold_pr);
     run.labels = label_inliers(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
     run.frames = frame_repeatability(run.pair.matches, run.truth->target_from_source, run.labels);
   }

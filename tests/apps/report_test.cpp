@@ -31,7 +31,7 @@ MethodRecord full_record() {
   record.pose.initial = RigidTransform();
   record.pose.target_from_source = RigidTransform();
   record.pose.covariance = PoseCovariance::Identity();
-  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}};
+  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, std::nullopt};
   return record;
 }
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace corral {
+
+/// A pose against the truth; what could not be had is absent.
+struct PoseScores {
+  std::optional<double> rotation_error_deg, translation_error_pr;
+  std::optional<double> rmse_pr;    ///< mean distance of the overlap's points, as the field's RMSE curves take it
+  std::optional<double> rms_pr;     ///< root mean square of the same
+  std::optional<double> add_share;  ///< mean distance of all source vertices, in diameters of the source
+};
+
+/// A row of records.csv: one method on one pair at one level of one experiment. "oracle" (all right matches) and "floor"
+/// (all matches) stand among the methods where the truth is known.
+struct StudyRecord {
+  std::string experiment, dataset, level, pair, method;
+  int repeat = 0;               ///< from 0
+  std::optional<double> value;  ///< of the swept attribute
+  std::string status;           ///< that of MethodRecord; "failed: ..." with the cause if the pair could not be matched
+  std::optional<int> matches, true_matches, selected, correct;
+  std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
+  std::optional<double> frame_share;            ///< of the right matches, those whose frames agree within 10 degrees
+  PoseScores initial, refined, dense;           ///< of the fit to the selection, refined on it, laid on the surface
+  std::optional<double> time_ms;                ///< of the grouping alone
+  std::string selection;                        ///< file of selections, below the run's folder; empty if there is none
+};
+
+/// The names of the columns, in order.
+const std::vector<std::string>& record_columns();
+std::string record_line(const StudyRecord& record);  ///< with its line break; reads back as the same record
+
+/// Reads records.csv. Throws IoError naming file and line.
+std::vector<StudyRecord> read_records(const std::string& path);
+
+}  // namespace corral

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace corral {
+
+/// A table of text cells under a header, as comma-separated values.
+struct CsvTable {
+  std::vector<std::string> header;             ///< the names of the columns, each once
+  std::vector<std::vector<std::string>> rows;  ///< each as long as the header
+
+  int column(const std::string& name) const;  ///< -1 if there is none of that name
+};
+
+/// Reads a table: one line per row, cells between commas; a cell in double quotes may hold commas, and quotes as two. Lines
+/// that begin with # are passed over. Throws IoError naming file and line: no header, a column twice, a ragged row, a quote
+/// that does not end.
+CsvTable read_csv(const std::string& path);
+/// The same of text that is in memory; `path` is for the messages.
+CsvTable parse_csv(const std::string& path, const std::string& text);
+
+/// The same as text, cells in quotes where they need them; reading it back gives the same table. Throws InvalidInput for a
+/// cell with a line break.
+std::string csv_text(const CsvTable& table);
+/// One row, with its line break.
+std::string csv_line(const std::vector<std::string>& cells);
+
+}  // namespace corral

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "io/dataset_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "io/csv_file.h"
+#include "io/line_reader.h"
+#include "io/toml_file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+namespace {
+
+const std::vector<std::string> kColumns = {"pair", "source", "target", "truth"};
+
+std::string one_of(const TomlTable& table, const std::string& key, const std::string& otherwise,
+                   const std::vector<std::string>& values) {
+  const std::string value = table.text(key).value_or(otherwise);
+  std::string expected;
+  for (const std::string& each : values) expected += (expected.empty() ? "" : ", ") + each;
+  if (std::find(values.begin(), values.end(), value) == values.end())
+    table.fail(key, "found " + corral::quoted(value) + ", expected one of " + expected);
+  return value;
+}
+
+std::string resolution_rule(const TomlTable& table) {
+  const std::string rule = table.scalar_text("resolution").value_or("mean");
+  if (rule == "mean" || rule == "source" || rule == "target") return rule;
+  const std::optional<double> length = parse_double(rule);
+  if (!length || !(*length > 0) || !std::isfinite(*length))
+    table.fail("resolution", "found " + corral::quoted(rule) + ", expected mean, source, target or a length above zero");
+  return rule;
+}
+
+bool is_name(const std::string& name) {
+  const auto fits = [](unsigned char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
+           letter == '.' || letter == '_' || letter == '+' || letter == '-';
+  };
+  return !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), fits);
+}
+
+void read_pairs(const std::string& path, Dataset& dataset) {
+  const CsvTable table = read_csv(path);
+  int columns[4];
+  for (std::size_t i = 0; i < kColumns.size(); ++i) {
+    columns[i] = table.column(kColumns[i]);
+    if (columns[i] < 0) throw IoError(path, "header", "the column " + kColumns[i] + " is missing");
+  }
+  for (const std::string& name : table.header)
+    if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end()) dataset.attributes.push_back(name);
+  std::set<std::string> names;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const auto& cells = table.rows[row];
+    const auto cell = [&](int i) { return cells[static_cast<std::size_t>(columns[i])]; };
+    const std::string place = "pair " + std::to_string(row + 1);
+    DatasetPair pair{cell(0), cell(1), cell(2), cell(3), {}};
+    if (!is_name(pair.name))
+      throw IoError(path, place, "the name " + corral::quoted(pair.name) + ": expected letters, digits and . _ + - only");
+    if (!names.insert(pair.name).second) throw IoError(path, place, "the name " + corral::quoted(pair.name) + " stands twice");
+    if (pair.source.empty() || pair.target.empty()) throw IoError(path, place, "a pair without source or target");
+    for (const std::string& attribute : dataset.attributes)
+      pair.attributes.push_back(cells[static_cast<std::size_t>(table.column(attribute))]);
+    dataset.pairs.push_back(std::move(pair));
+  }
+  if (dataset.pairs.empty()) throw IoError(path, "", "no pairs, expected one line for each");
+}
+
+}  // namespace
+
+std::string Dataset::path(const std::string& file) const {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
+Dataset read_dataset(const std::string& folder) {
+  Dataset dataset;
+  dataset.folder = folder;
+  const std::string path = dataset.path("dataset.toml");
+  const TomlTable table = TomlTable::read(path);
+  table.only({"name", "kind", "units", "resolution", "provenance", "licence", "citation"});
+  if (!table.text("name")) throw IoError(path, "", "the key name is missing, expected name = \"...\"");
+  dataset.name = *table.text("name");
+  if (!is_name(dataset.name)) table.fail("name", "expected letters, digits and . _ + - only");
+  dataset.kind = one_of(table, "kind", "pairs", {"retrieval", "recognition", "registration", "pairs"});
+  dataset.units = one_of(table, "units", "unknown", {"mm", "m", "unknown"});
+  dataset.resolution = resolution_rule(table);
+  dataset.provenance = table.text("provenance").value_or("");
+  dataset.licence = table.text("licence").value_or("");
+  dataset.citation = table.texts("citation");
+  read_pairs(dataset.path("pairs.csv"), dataset);
+  return dataset;
+}
+
+std::string dataset_toml_text(const Dataset& dataset) {
+  std::string text;
+  const auto put = [&](const std::string& key, const std::string& value) {
+    text += key + " = " + toml_text(value) + "\n";
+  };
+  put("name", dataset.name);
+  put("kind", dataset.kind);
+  put("units", dataset.units);
+  put("resolution", dataset.resolution);
+  put("provenance", dataset.provenance);
+  put("licence", dataset.licence);
+  text += "citation = [";
+  for (const std::string& work : dataset.citation) text += "\n  " + toml_text(work) + ",";
+  return text + (dataset.citation.empty() ? "]\n" : "\n]\n");
+}
+
+std::string pairs_csv_text(const Dataset& dataset) {
+  CsvTable table{kColumns, {}};
+  table.header.insert(table.header.end(), dataset.attributes.begin(), dataset.attributes.end());
+  for (const DatasetPair& pair : dataset.pairs) {
+    table.rows.push_back({pair.name, pair.source, pair.target, pair.truth});
+    table.rows.back().insert(table.rows.back().end(), pair.attributes.begin(), pair.attributes.end());
+  }
+  return csv_text(table);
+}
+
+std::string attribute_text(const Dataset& dataset, const DatasetPair& pair, const std::string& attribute) {
+  const auto found = std::find(dataset.attributes.begin(), dataset.attributes.end(), attribute);
+  return found == dataset.attributes.end()
+             ? std::string()
+             : pair.attributes[static_cast<std::size_t>(found - dataset.attributes.begin())];
+}
+
+std::optional<double> attribute_number(const Dataset& dataset, const DatasetPair& pair, const std::string& attribute) {
+  const std::string text = attribute_text(dataset, pair, attribute);
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> number = parse_double(text);
+  if (!number || !std::isfinite(*number))
+    throw IoError(dataset.path("pairs.csv"), "pair " + pair.name,
+                  attribute + " is " + corral::quoted(text) + ", expected a finite number or nothing");
+  return number;
+}
+
+}  // namespace corral

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace corral {
+
+/// Two surfaces of a data set. Paths are as they stand in pairs.csv: absolute, or relative to the folder of
+/// the set.
+struct DatasetPair {
+  std::string name;                     ///< unique in its set; letters, digits, and . _ + - only
+  std::string source, target;           ///< mesh files
+  std::string truth;                    ///< transform file, target_from_source; empty if it is not known
+  std::vector<std::string> attributes;  ///< one cell for each of Dataset::attributes; empty where unknown
+};
+
+/// A data set: a folder with dataset.toml and pairs.csv, and the files that they name.
+struct Dataset {
+  std::string folder;
+  std::string name;                     ///< such as "b3r"
+  std::string kind = "pairs";           ///< retrieval | recognition | registration | pairs
+  std::string units = "unknown";        ///< of the meshes: mm | m | unknown
+  std::string resolution = "mean";      ///< pr of a pair: mean|source|target of the two, or a length in mesh units
+  std::string provenance, licence;      ///< in words
+  std::vector<std::string> citation;    ///< one work each
+  std::vector<std::string> attributes;  ///< further columns of pairs.csv, such as noise_pr, overlap, model, scene
+  std::vector<DatasetPair> pairs;
+
+  std::string path(const std::string& file) const;  ///< of a file of the set, from where the program runs
+};
+
+/// Reads the manifest; looks at none of the files that it names.
+///
+///   dataset.toml   name (required), kind, units, resolution, provenance, licence, citation (a list)
+///   pairs.csv      pair,source,target,truth, then any attributes
+///
+/// Throws IoError naming file and place: an unknown or doubled key, a wrong kind, no pairs, a doubled or empty pair name,
+/// an empty source or target.
+Dataset read_dataset(const std::string& folder);
+
+/// The two files as text; reading them back gives the same set.
+std::string dataset_toml_text(const Dataset& dataset);
+std::string pairs_csv_text(const Dataset& dataset);
+
+/// A cell of an attribute; empty if the set has no such column.
+std::string attribute_text(const Dataset& dataset, const DatasetPair& pair, const std::string& attribute);
+/// The same as a number; absent if the cell is empty or there is no such column. Throws IoError if it is no finite number.
+std::optional<double> attribute_number(const Dataset& dataset, const DatasetPair& pair, const std::string& attribute);
+
+}  // namespace corral
