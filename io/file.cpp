@@ -73,6 +73,7 @@ class StagedFile {
     }
     try {
       write_all(descriptor.value, file.content, file.path);
+      if (::fsync(descriptor.value) != 0) fail(file.path, "be written");  // whole after a power cut too
       if (::fchmod(descriptor.value, mode_for(place_)) != 0) fail(file.path, "be given its permissions");
     } catch (...) {
       discard();

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// corral evaluate: the experiments of a study on data sets, into the folder of a run.
+#include <algorithm>
+#include <map>
+
+#include "apps/commands/commands.h"
+#include "apps/experiment/specification.h"
+#include "apps/experiment/study.h"
+#include "apps/experiment/time_study.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::vector<std::string> experiments;
+  std::string data;
+  StudySettings study;
+  std::optional<int> jobs;
+  bool dense = false, json = false;
+};
+
+/// What is shown of a method in an experiment: the mean of its levels.
+struct Overview {
+  int levels = 0, pairs = 0, excluded = 0, empty = 0, failed = 0;
+  double precision = 0, recall = 0, f1 = 0, success = 0;
+};
+
+std::string overview_text(const std::vector<SummaryRow>& rows) {
+  std::vector<std::pair<std::string, std::string>> order;
+  std::map<std::pair<std::string, std::string>, Overview> cells;
+  for (const SummaryRow& row : rows) {
+    const auto key = std::make_pair(row.experiment, row.method);
+    if (!cells.count(key)) order.push_back(key);
+    Overview& cell = cells[key];
+    cell.pairs += row.pairs, cell.excluded += row.excluded, cell.empty += row.empty, cell.failed += row.failed;
+    if (row.pairs == 0) continue;
+    ++cell.levels;
+    cell.precision += *row.precision, cell.recall += *row.recall, cell.f1 += *row.f1, cell.success += *row.success;
+  }
+  TextTable table(
+      {"experiment", "method", "pairs", "excluded", "empty", "failed", "precision", "recall", "F1", "success"});
+  for (const auto& key : order) {
+    const Overview& cell = cells.at(key);
+    const auto mean = [&](double sum) { return cell.levels > 0 ? fixed(sum / cell.levels, 3) : std::string(); };
+    table.add({key.first, key.second, std::to_string(cell.pairs), std::to_string(cell.excluded),
+               std::to_string(cell.empty), std::to_string(cell.failed), mean(cell.precision), mean(cell.recall),
+               mean(cell.f1), mean(cell.success)});
+  }
+  return table.str() +
+         "Means over the levels of an experiment, at each over its pairs; an empty selection has precision and recall "
+         "0, pairs\n"
+         "without right matches are excluded. success: refined RMSE of at most 5 pr. Every level is in summary.csv.\n";
+}
+
+std::string times_text(const std::vector<TimeRow>& rows) {
+  TextTable table({"matches", "method", "runs", "median ms", "quartiles", ""});
+  for (const TimeRow& row : rows)
+    table.add({row.level, row.method, std::to_string(row.runs), fixed(row.median_ms, 4),
+               fixed(row.lower_quartile_ms, 4), fixed(row.upper_quartile_ms, 4)});
+  return table.str();
+}
+
+int evaluate_time(const Settings& settings, const WorkList& list) {
+  if (settings.jobs) throw UsageError("--jobs: times are taken in one thread, expected none");
+  std::vector<TimeRow> rows;
+  {
+    Progress progress(static_cast<double>(list.experiments.front().info.levels.size()) + 1);
+    rows = run_time_study(list, settings.study, [&](const std::string& what, double) { progress.begin(what); });
+  }
+  Json json = Json::array();
+  for (const TimeRow& row : rows)
+    json.push_back({{"level", row.level}, {"method", row.method}, {"runs", row.runs}, {"median_ms", row.median_ms}});
+  if (settings.json)
+    put("", Json{{"run", settings.study.run}, {"times", json}});
+  else
+    put("", times_text(rows));
+  return kOk;
+}
+
+int evaluate_pairs(const Settings& settings, const WorkList& list) {
+  std::optional<Progress> progress;
+  const StudyOutcome outcome = run_study(list, settings.study, [&](const StudyProgress& now) {
+    if (!progress) progress.emplace(static_cast<double>(now.total - now.done));
+    progress->begin(std::to_string(now.done) + " of " + std::to_string(now.total) + " pairs done, " +
+                    std::to_string(now.failed) + " failed");
+  });
+  progress.reset();
+  if (settings.json) {
+    put("", Json{{"run", settings.study.run}, {"pairs", outcome.units}, {"failed", outcome.failed}});
+  } else {
+    put("", overview_text(outcome.summary));
+    say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed; the run is in " +
+        settings.study.run);
+  }
+  return outcome.failed > 0 ? kPartial : kOk;
+}
+
+/// The call as it would be typed again.
+std::string command_line(const Settings& settings) {
+  std::string line = "corral evaluate";
+  for (const std::string& experiment : settings.experiments) line += " " + experiment;
+  line += " --data " + settings.data + " -o " + settings.study.run;
+  if (settings.jobs) line += " --jobs " + std::to_string(*settings.jobs);
+  if (!settings.study.cache.empty()) line += " --cache " + settings.study.cache;
+  return line + (settings.dense ? " --dense" : "") + (settings.json ? " --json" : "");
+}
+
+int evaluate(Settings settings) {
+  if (settings.jobs && (*settings.jobs < 1 || *settings.jobs > 256)) throw UsageError("--jobs: expected 1 .. 256");
+  std::vector<Experiment> experiments;
+  bool has_times = false;
+  for (const std::string& name : settings.experiments) {
+    experiments.push_back(read_experiment(name));
+    experiments.back().dense = experiments.back().dense || settings.dense;
+    has_times = has_times || experiments.back().sweep == Sweep::TableSize;
+  }
+  if (has_times && experiments.size() > 1)
+    throw UsageError("times are taken alone, expected the other experiments in a run of their own");
+  settings.study.jobs = settings.jobs.value_or(0);
+  settings.study.command_line = command_line(settings);
+  const WorkList list = make_work_list(std::move(experiments), settings.data);
+  return has_times ? evaluate_time(settings, list) : evaluate_pairs(settings, list);
+}
+
+std::string footer() {
+  std::string names;
+  for (const std::string& name : built_in_experiments()) names += (names.empty() ? "" : ", ") + name;
+  return "Experiments of the paper: " + names +
+         ".\nAn experiment of your own is a file like theirs (paper/README.md explains the keys). A call that was cut "
+         "short "
+         "goes on\nwhere it was; a pair that fails is recorded with its cause, and the exit status is 4.\n"
+         "Examples:\n  corral evaluate noise density --data data -o runs/b3r --jobs 2\n"
+         "  corral evaluate my-experiment.toml --data my-scans -o runs/mine --cache ~/.cache/corral\n"
+         "  corral evaluate time --data data -o runs/time";
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  auto* command =
+      app.add_subcommand("evaluate", "Experiments on data sets: every pair, grouper and level, into a run's folder");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("experiments", settings->experiments, "Names (below) or TOML files")
+      ->type_name("EXPERIMENT")
+      ->required();
+  command->add_option("--data", settings->data, "A data set, or a folder with one folder for each (dataset.toml in it)")
+      ->type_name("FOLDER")
+      ->required();
+  command->add_option("-o,--output", settings->study.run, "Folder of the run")->type_name("FOLDER")->required();
+  command->add_option("--jobs", settings->jobs,
+                      "Pairs at a time; as many as there are processors unless given. Results do not depend on it");
+  command
+      ->add_option("--cache", settings->study.cache,
+                   "Folder for features and matches, which runs may share; within the run's unless given")
+      ->type_name("FOLDER");
+  command->add_flag("--dense", settings->dense, "Lay the whole surfaces on each other too, in columns of their own");
+  command->add_flag("--json", settings->json, "A short account as JSON instead of the table");
+  command->footer(footer());
+  command->callback([settings, &action] { action = [settings] { return evaluate(*settings); }; });
+}
+
+}  // namespace corral

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernel/correspondence_set.h"
+#include "kernel/surface/descriptor.h"
+
+namespace corral {
+
+/// 32 hexadecimal digits that differ where contents differ (a 128-bit hash; not against those who forge).
+std::string content_hash(const std::string& content);
+
+/// Intermediate results by the hash of all that they depend on. Whatever is missing or damaged is absent, and is made anew.
+class ContentStore {
+ public:
+  explicit ContentStore(std::string folder);
+
+  std::optional<Descriptors> descriptors(const std::string& key) const;
+  std::optional<CorrespondenceSet> matches(const std::string& key) const;
+  void put(const std::string& key, const Descriptors& descriptors) const;
+  void put(const std::string& key, const CorrespondenceSet& matches) const;
+
+ private:
+  std::optional<std::string> load(const std::string& key) const;
+  void save(const std::string& key, const std::string& content) const;
+  std::string folder_;
+};
+
+}  // namespace corral
