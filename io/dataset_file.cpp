@@ -80,6 +80,8 @@ Dataset read_dataset(const std::string& folder) {
   Dataset dataset;
   dataset.folder = folder;
   const std::string path = dataset.path("dataset.toml");
+  if (!std::filesystem::exists(path) && std::filesystem::exists(dataset.path(kRecipeName)))
+    throw IoError(folder, "", "is half made: its manifest is missing, run the command that makes it again to go on");
   const TomlTable table = TomlTable::read(path);
   table.only({"name", "kind", "units", "resolution", "provenance", "licence", "citation"});
   if (!table.text("name")) throw IoError(path, "", "the key name is missing, expected name = \"...\"");

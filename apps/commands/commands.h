@@ -33,11 +33,15 @@ void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_scan(CLI::App& app, Action& action);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
 void check_threshold(double threshold_pr);        ///< throws UsageError
+
+/// The text of an option as a point or direction "x,y,z". Throws UsageError.
+Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
 
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh.h"
 #include "kernel/surface/neighborhood.h"
+#include "kernel/surface/range_scan.h"
 
 namespace corral {
 
@@ -13,5 +16,32 @@ namespace corral {
 /// Source    the evaluation programs behind [yang2017evaluation]'s successors (RMSE on U3M).
 Points overlap_points(const Points& source, const PointIndex& target_index, const RigidTransform& target_from_source,
                       double threshold);
+
+/// How much two surfaces share, 0 .. 1: the vertices with one of the other surface within `threshold` (mesh units; 2 pr in
+/// the field), counted on both, the smaller count over the smaller number of vertices. 0 if one has none.
+///
+/// Source    [yang2017evaluation] for the ratio; it leaves the threshold and the direction open.
+double overlap_share(const Points& source, const Points& target, const RigidTransform& target_from_source,
+                     double threshold);
+
+/// Area of all triangles in squared mesh units.
+double surface_area(const Mesh& mesh);
+
+/// How little of a model a scene shows, and how much else; shares of 1.
+struct Visibility {
+  double occlusion, clutter;
+};
+
+/// Of each surface before the sensor
+///
+///   occlusion = 1 - area of its patch / area of its triangles     clutter = 1 - area of its patch / area of all patches
+///
+/// with the areas of the surfaces that the sensor sees (RangeScan::patch_areas). One view of a whole convex object hides
+/// half of it, and a little more for what is met flatter than the scan's grazing_deg. The faces of a scan cover less than
+/// that, by a rim of half a ray's spacing around each patch: occlusion measured from them is some hundredths higher.
+///
+/// Source    [mian2006recognition], [mian2010repeatability].
+/// Returns   clutter 1 where nothing at all is seen.
+std::vector<Visibility> measure_visibility(const PosedSurfaces& scene, const RangeScan& scan);
 
 }  // namespace corral
