@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "apps/match_pair.h"
+#include "apps/read_surface.h"
 #include "grouping/registry.h"
 
 namespace corral {
@@ -31,9 +32,6 @@ void add_run(CLI::App& app, Action& action);
 void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
-
-/// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
-Mesh read_surface(const std::string& path);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
