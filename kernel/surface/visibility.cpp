@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/visibility.h"
 
+#include <algorithm>
+
+#include "kernel/surface/nearest_points.h"
+
 namespace corral {
+namespace {
+
+/// For each point under the motion the nearest of others, -1 if none is within the threshold.
+Indices nearest_within(const Points& points, const Points& others, const RigidTransform& motion, double threshold) {
+  const PointTree tree(others);
+  return NearestTracker(tree).nearest(motion.apply(points), threshold);
+}
+
+}  // namespace
 
 Points overlap_points(const Points& source, const PointIndex& target_index, const RigidTransform& target_from_source,
                       double threshold) {
@@ -13,6 +26,19 @@ Points overlap_points(const Points& source, const PointIndex& target_index, cons
       shared.push_back(static_cast<int>(row));
   }
   return source(shared, Eigen::all);
+}
+
+double overlap_share(const Points& source, const Points& target, const RigidTransform& target_from_source,
+                     double threshold) {
+  const auto least = std::min(source.rows(), target.rows());
+  if (least == 0) return 0;
+  const auto count = [&](const Points& from, const Points& to, const RigidTransform& motion) {
+    const Indices nearest = nearest_within(from, to, motion, threshold);
+    return std::count_if(nearest.begin(), nearest.end(), [](int row) { return row >= 0; });
+  };
+  const auto shared =
+      std::min(count(source, target, target_from_source), count(target, source, target_from_source.inverse()));
+  return static_cast<double>(shared) / static_cast<double>(least);
 }
 
 }  // namespace corral

@@ -14,4 +14,11 @@ namespace corral {
 Points overlap_points(const Points& source, const PointIndex& target_index, const RigidTransform& target_from_source,
                       double threshold);
 
+/// How much two surfaces share, 0 .. 1: the vertices with one of the other surface within `threshold` (mesh units; 2 pr in
+/// the field), counted on both, the smaller count over the smaller number of vertices. 0 if one has none.
+///
+/// Source    [yang2017evaluation] for the ratio; it leaves the threshold and the direction open.
+double overlap_share(const Points& source, const Points& target, const RigidTransform& target_from_source,
+                     double threshold);
+
 }  // namespace corral
