@@ -3,13 +3,15 @@
 
 #include <cmath>
 
+#include "io/file.h"
 #include "io/mesh_file.h"
 #include "kernel/error.h"
 
 namespace corral {
 
 Mesh read_surface(const std::string& path) {
-  Mesh mesh = read_mesh(path);
+  const bool is_list = path.size() > 4 && path.compare(path.size() - 4, 4, ".txt") == 0;
+  Mesh mesh = is_list ? parse_xyz(path, read_file(path)) : read_mesh(path);
   const double diagonal = bounding_box_diagonal(mesh.vertices);
   if (!std::isfinite(diagonal))
     throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
