@@ -34,9 +34,11 @@ const std::map<std::string, Room> kRooms = {
     {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
     {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
     {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen", "toml++"}}},
-    {"apps", {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"}, {"Eigen", "CLI", "nlohmann", "oneapi"}}},
+    {"apps",
+     {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"},
+      {"Eigen", "CLI", "nlohmann", "oneapi", "boost"}}},
 };
-const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++"};
+const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
 struct Include {

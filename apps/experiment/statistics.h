@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace corral {
+
+/// A mean and the interval that holds the true one in 95 of 100 studies.
+struct MeanInterval {
+  double mean = 0, low = 0, high = 0;
+};
+
+constexpr int kResamples = 1000;
+
+/// Bootstrap over the values (of pairs, or of differences on the same pairs): bias-corrected and accelerated (BCa,
+/// [efron1987better]) at Student's quantiles instead of the normal ones. Over 10 pairs with precisions as they occur, plain
+/// percentiles hold the true mean in only 86 to 92 of 100 studies and BCa in 87 to 95; these, over 10 to 30 pairs, in 93 to
+/// 97. Deterministic in values and seed. Throws InvalidInput without values; of a single value the interval is that value.
+MeanInterval bootstrap_mean(const std::vector<double>& values, std::uint64_t seed);
+
+/// Whether paired differences are centred at zero, two-sided. Zeros are left out (Wilcoxon's treatment). Exact for at most
+/// 50 differences without zeros and ties (scipy's method "exact"), else the normal approximation with the variance
+/// corrected for ties and without a continuity correction (scipy's method "approx"). p is 1 if nothing differs.
+struct WilcoxonTest {
+  double statistic = 0;  ///< the lesser of the two sums of ranks
+  double p = 1;
+  bool is_exact = false;
+};
+WilcoxonTest wilcoxon_signed_rank(const std::vector<double>& differences);
+
+/// Holm's step-down adjustment: each p beside the others that were tested with it.
+std::vector<double> holm_adjusted(const std::vector<double>& p);
+
+/// Whether two methods succeed equally often on the same pairs, from the pairs on which only one of them does.
+struct McNemarTest {
+  double exact_p = 1;                       ///< binomial, two-sided
+  double chi_square = 0, chi_square_p = 1;  ///< with Edwards' continuity correction, one degree of freedom
+};
+McNemarTest mcnemar(int only_first, int only_second);
+
+/// The range of `groups` independent standard normal variables: the studentized range with infinitely many degrees of
+/// freedom. Quantile to about 1e-13. Throw InvalidInput for fewer than 2 groups, or p outside (0, 1).
+double studentized_range_cdf(double range, int groups);
+double studentized_range_quantile(double p, int groups);
+
+/// Methods ranked on each of the same pairs (1 is best, ties share), as a critical-difference diagram shows them
+/// [demsar2006statistical].
+struct RankComparison {
+  std::vector<double> average_ranks;      ///< in the order given
+  double chi_square = 0, p = 1;           ///< Friedman's test that all are equal, corrected for ties
+  double critical_difference = 0;         ///< Nemenyi's, at 5 %: average ranks that lie further apart differ
+  std::vector<std::vector<int>> cliques;  ///< largest groups within it, of 2 or more, each from the best on
+};
+/// scores[method][pair], higher is better. Throws InvalidInput for fewer than 2 methods, no pair, ragged rows, or values
+/// that are no numbers.
+RankComparison compare_ranks(const std::vector<std::vector<double>>& scores);
+
+/// Ranks from 1 in ascending order; equal values share the mean of theirs.
+std::vector<double> shared_ranks(const std::vector<double>& values);
+
+/// Spearman's rank correlation; NaN if there are fewer than 2 values or one side is constant.
+double spearman(const std::vector<double>& x, const std::vector<double>& y);
+
+}  // namespace corral
