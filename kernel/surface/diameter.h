@@ -9,7 +9,7 @@ namespace corral {
 /// their order.
 ///
 /// Cost      a tree of boxes, pairs of which are dropped where even their farthest corners are no farther apart than two
-///           points already are: about O(V log V) for surfaces.
+///           points already are: about O(V log V) for surfaces, O(V^1.5) for points on a sphere.
 double diameter(const Points& points);
 
 }  // namespace corral
