@@ -5,6 +5,7 @@
 
 #include "apps/report.h"
 #include "apps/stopwatch.h"
+#include "kernel/surface/diameter.h"
 #include "kernel/surface/visibility.h"
 
 namespace corral {
@@ -19,31 +20,50 @@ void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::op
     record.score =
         score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
   record.pose = refine_rigid(matches, record.found.selected);
-  if (truth && record.pose.initial)
-    record.initial_errors = pose_errors(*record.pose.initial, *truth, matches.resolution);
-  if (truth && record.pose.target_from_source)
-    record.errors = pose_errors(*record.pose.target_from_source, *truth, matches.resolution);
+  if (truth) judge_pose(record, *truth, matches.resolution);
 }
 
 }  // namespace
 
 PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
                      double resolution, double threshold_pr) {
-  return {target_from_source,
-          overlap_points(source.vertices, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution),
-          threshold_pr};
+  return {target_from_source, points_in_overlap(source.vertices, target, target_from_source, resolution), threshold_pr,
+          source.vertices, corral::diameter(source.vertices)};
+}
+
+Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
+                         double resolution) {
+  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution);
 }
 
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
-  return {rotation_error_deg(estimate, truth.target_from_source),
-          translation_error_pr(estimate, truth.target_from_source, resolution),
-          point_error(estimate, truth.target_from_source, truth.overlap, resolution), std::nullopt};
+  PoseErrors errors{rotation_error_deg(estimate, truth.target_from_source),
+                    translation_error_pr(estimate, truth.target_from_source, resolution),
+                    point_error(estimate, truth.target_from_source, truth.overlap, resolution), std::nullopt};
+  if (truth.diameter > 0)
+    errors.add_share = point_error(estimate, truth.target_from_source, truth.vertices, truth.diameter)->mean_pr;
+  return errors;
+}
+
+bool is_registered(const std::optional<PoseErrors>& errors) {
+  return errors && errors->points && errors->points->mean_pr <= kSuccessPr;
+}
+
+std::string MethodRecord::outcome() const {
+  if (!score || !failure.empty()) return "";
+  const bool at_first = is_registered(initial_errors), in_the_end = is_registered(errors);
+  return in_the_end ? (at_first ? "found" : "saved") : (at_first ? "spoiled" : "lost");
 }
 
 std::string MethodRecord::status() const {
   if (!failure.empty()) return (is_too_large ? "too large: " : "failed: ") + failure;
   if (pose.target_from_source && !pose.converged) return "not converged";
   return to_text(pose.status);
+}
+
+void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution) {
+  if (record.pose.initial) record.initial_errors = pose_errors(*record.pose.initial, truth, resolution);
+  if (record.pose.target_from_source) record.errors = pose_errors(*record.pose.target_from_source, truth, resolution);
 }
 
 TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat) {

@@ -34,20 +34,6 @@ Json to_json(const SurfaceReport& report) {
           {"descriptors", report.descriptors}};
 }
 
-/// The members that a pose against the truth has; null where it has none.
-void add_errors(Json& json, const std::optional<PoseErrors>& errors) {
-  std::optional<double> rotation, translation, rmse, mean;
-  if (errors) {
-    rotation = errors->rotation_error_deg;
-    translation = errors->translation_error_pr;
-    if (errors->points) rmse = errors->points->rmse_pr, mean = errors->points->mean_pr;
-  }
-  json["rotation_error_deg"] = json_or_null(rotation);
-  json["translation_error_pr"] = json_or_null(translation);
-  json["rmse_pr"] = json_or_null(rmse);
-  json["mean_error_pr"] = json_or_null(mean);
-}
-
 /// The counts that are not zero, or nothing.
 std::string oddities(const Topology& topology) {
   std::string text;
@@ -70,79 +56,6 @@ std::string surface_lines(const char* name, const SurfaceReport& side) {
          " with fewer than 10 neighbours, " + std::to_string(side.dropped_no_frame) + " without a frame, " +
          std::to_string(side.dropped_no_histogram) + " without a histogram; " + std::to_string(side.descriptors) +
          " described\n";
-}
-
-/// What a row of the table of methods holds, in its order, with so many decimals for people (-1: a whole number).
-struct Cell {
-  std::optional<double> value;
-  int decimals;
-};
-std::vector<Cell> cells(const MethodRecord& record) {
-  std::optional<double> selected, precision, recall, f1, time, rotation, translation, rmse;
-  if (record.failure.empty()) selected = static_cast<double>(record.found.selected.size()), time = record.time_ms;
-  if (record.score && record.failure.empty())
-    precision = record.score->precision, recall = record.score->recall, f1 = record.score->f1;
-  if (record.errors) {
-    rotation = record.errors->rotation_error_deg;
-    translation = record.errors->translation_error_pr;
-    if (record.errors->points) rmse = record.errors->points->rmse_pr;
-  }
-  return {{selected, 0}, {precision, 3}, {recall, 3}, {f1, 3}, {time, 2}, {rotation, 3}, {translation, 3}, {rmse, 3}};
-}
-
-const std::vector<std::string> kColumns = {"method",  "selected", "precision",          "recall",
-                                           "f1",      "time_ms",  "rotation_error_deg", "translation_error_pr",
-                                           "rmse_pr", "status"};
-
-/// The same for the dense refinement.
-std::vector<Cell> dense_cells(const MethodRecord& record) {
-  std::optional<double> overlap_before, overlap, rms_before, rms, rotation, translation, rmse;
-  if (record.dense) {
-    overlap_before = record.dense->before.overlap, rms_before = record.dense->before.rms_pr;
-    overlap = record.dense->after.overlap, rms = record.dense->after.rms_pr;
-  }
-  if (record.dense_errors) {
-    rotation = record.dense_errors->rotation_error_deg;
-    translation = record.dense_errors->translation_error_pr;
-    if (record.dense_errors->points) rmse = record.dense_errors->points->rmse_pr;
-  }
-  return {{overlap_before, 3}, {overlap, 3}, {rms_before, 3}, {rms, 3}, {rotation, 4}, {translation, 4}, {rmse, 4}};
-}
-
-std::string dense_status(const MethodRecord& record) {
-  return record.dense ? to_text(record.dense->status) : "no pose to begin with";
-}
-
-const std::vector<std::string> kDenseColumns = {"method",
-                                                "overlap_before",
-                                                "overlap",
-                                                "residual_before_pr",
-                                                "residual_pr",
-                                                "rotation_error_deg",
-                                                "translation_error_pr",
-                                                "rmse_pr",
-                                                "status"};
-
-/// Texts between commas, on a line; what a text holds that would end its field is replaced.
-std::string csv_line(const std::string& first, const std::vector<Cell>& numbers, std::string last) {
-  std::string line = first;
-  for (const Cell& cell : numbers) line += "," + (cell.value ? to_text(*cell.value) : "");
-  std::replace_if(
-      last.begin(), last.end(), [](char c) { return c == ',' || c == '"' || c == '\n'; }, ';');
-  return line + "," + last + "\n";
-}
-
-std::string csv_header(const std::vector<std::string>& columns) {
-  std::string text;
-  for (const std::string& column : columns) text += (text.empty() ? "" : ",") + column;
-  return text + "\n";
-}
-
-std::vector<std::string> text_row(const std::string& first, const std::vector<Cell>& numbers, const std::string& last) {
-  std::vector<std::string> row{first};
-  for (const Cell& cell : numbers) row.push_back(fixed(cell.value, cell.decimals));
-  row.push_back(last);
-  return row;
 }
 
 }  // namespace
@@ -198,45 +111,6 @@ Json to_json(const GroupingScore& score) {
           {"precision", json_or_null(score.precision)},
           {"recall", json_or_null(score.recall)},
           {"f1", json_or_null(score.f1)}};
-}
-
-Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors) {
-  Json json = {{"status", to_text(pose.status)},
-               {"target_from_source", pose.target_from_source ? to_json(*pose.target_from_source) : Json(nullptr)}};
-  add_errors(json, errors);
-  json["iterations"] = pose.iterations;
-  json["converged"] = pose.converged;
-  json["initial"] = pose.initial ? to_json(*pose.initial) : Json(nullptr);
-  json["initial_rms_pr"] = pose.initial ? Json(pose.initial_rms_pr) : Json(nullptr);
-  json["final_rms_pr"] = pose.target_from_source ? Json(pose.final_rms_pr) : Json(nullptr);
-  json["initial_cost"] = pose.initial ? Json(pose.initial_cost) : Json(nullptr);
-  json["final_cost"] = pose.target_from_source ? Json(pose.final_cost) : Json(nullptr);
-  json["condition"] = json_or_null(pose.condition);
-  json["covariance"] = nullptr;
-  if (pose.covariance) {
-    json["covariance"] = Json::array();
-    for (int row = 0; row < 6; ++row) {
-      Json numbers = Json::array();
-      for (int column = 0; column < 6; ++column) numbers.push_back((*pose.covariance)(row, column));
-      json["covariance"].push_back(numbers);
-    }
-  }
-  return json;
-}
-
-Json to_json(const MethodRecord& record) {
-  Json json = {{"method", record.method}};
-  const std::vector<Cell> values = cells(record);
-  for (std::size_t i = 0; i < values.size(); ++i) json[kColumns[i + 1]] = json_or_null(values[i].value);
-  if (values[0].value) json["selected"] = record.found.selected.size();
-  json["status"] = record.status();
-  if (!record.dense) return json;
-  const std::vector<Cell> dense = dense_cells(record);
-  for (std::size_t i = 0; i < dense.size(); ++i) json["dense"][kDenseColumns[i + 1]] = json_or_null(dense[i].value);
-  json["dense"]["condition"] = record.dense->condition;
-  json["dense"]["pose"] = record.dense->target_from_source ? to_json(*record.dense->target_from_source) : Json(nullptr);
-  json["dense"]["status"] = dense_status(record);
-  return json;
 }
 
 Json typed(const std::string& value) {
@@ -311,40 +185,29 @@ std::string TextTable::markdown() const {
   return text;
 }
 
+std::string table_text(const std::vector<Json>& rows, const std::vector<TableColumn>& columns) {
+  std::vector<std::string> header;
+  for (const TableColumn& column : columns) header.push_back(column.header);
+  TextTable table(header);
+  for (const Json& row : rows) {
+    std::vector<std::string> cells;
+    for (const TableColumn& column : columns) {
+      const Json& value = row.at(column.key);
+      if (value.is_number())
+        cells.push_back(fixed(value.get<double>(), column.decimals));
+      else
+        cells.push_back(value.is_null() ? "" : value.get<std::string>());
+    }
+    table.add(cells);
+  }
+  return table.str();
+}
+
 std::string fixed(std::optional<double> value, int decimals) {
   if (!value) return "";
   std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, "%.*f", decimals, *value)) + 1, '\0');
   std::snprintf(text.data(), text.size(), "%.*f", decimals, *value);
   text.pop_back();
-  return text;
-}
-
-std::string methods_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
-  TextTable table({"method", "selected", "precision", "recall", "F1", "time ms", "rot err deg", "transl err pr",
-                   "RMSE pr", "status"});
-  for (const auto* part : {&records, &bounds})
-    for (const MethodRecord& record : *part) table.add(text_row(record.method, cells(record), record.status()));
-  return table.str();
-}
-
-std::string methods_csv(const std::vector<MethodRecord>& records) {
-  std::string text = csv_header(kColumns);
-  for (const MethodRecord& record : records) text += csv_line(record.method, cells(record), record.status());
-  return text;
-}
-
-std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
-  TextTable table({"method", "overlap before", "overlap", "residual before pr", "residual pr", "rot err deg",
-                   "transl err pr", "RMSE pr", "status"});
-  for (const auto* part : {&records, &bounds})
-    for (const MethodRecord& record : *part)
-      table.add(text_row(record.method, dense_cells(record), dense_status(record)));
-  return table.str();
-}
-
-std::string dense_csv(const std::vector<MethodRecord>& records) {
-  std::string text = csv_header(kDenseColumns);
-  for (const MethodRecord& record : records) text += csv_line(record.method, dense_cells(record), dense_status(record));
   return text;
 }
 

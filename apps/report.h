@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluate_pair.h"
 #include "apps/match_pair.h"
+#include "grouping/options.h"
+#include "kernel/evaluation.h"
+#include "kernel/rigid_transform.h"
 
 namespace corral {
 
@@ -22,8 +24,6 @@ Json to_json(const RigidTransform& transform);  ///< four rows of four
 Json to_json(const MatchReport& report);
 Json to_json(const MatchSettings& settings);  ///< what results depend on
 Json to_json(const GroupingScore& score);
-Json to_json(const RefinedPose& pose, const std::optional<PoseErrors>& errors);
-Json to_json(const MethodRecord& record);
 Json to_json(const std::vector<OptionValue>& options);  ///< name -> value
 Json typed(const std::string& value);                   ///< a bool, a number or else the text itself
 
@@ -42,17 +42,15 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
+/// A column of a table for people: its header, its key in the JSON of a row, and the decimals of its numbers.
+struct TableColumn {
+  std::string header, key;
+  int decimals = 0;
+};
+std::string table_text(const std::vector<Json>& rows, const std::vector<TableColumn>& columns);
+
 /// A number with so many decimals; empty if absent.
 std::string fixed(std::optional<double> value, int decimals);
-
-/// The table of a pair, one row a method, and below them those of the bounds.
-std::string methods_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
-/// The same for scripts: exact numbers, empty where undefined.
-std::string methods_csv(const std::vector<MethodRecord>& records);
-
-/// What the dense refinement made of each pose, in tables of its own.
-std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
-std::string dense_csv(const std::vector<MethodRecord>& records);
 
 /// Indented, on lines of its own; bytes that are no UTF-8 (file names may hold any) are replaced.
 std::string json_text(const Json& json);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
+#include "apps/evaluate_pair.h"
 #include "apps/memory.h"
 #include "apps/report.h"
 #include "io/file.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/report_pair.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -35,27 +35,30 @@ RobustLoss loss_of(const std::string& text) {
   return static_cast<RobustLoss>(found - names.begin());
 }
 
-/// The source points of the right matches: where the two surfaces are known to overlap without seeing them.
-PairTruth truth_of(const CorrespondenceSet& matches, const Settings& settings) {
+/// Scores the selection and judges its pose over the source points of the right matches: where the two surfaces are known
+/// to overlap without seeing them.
+void judge(MethodRecord& record, const CorrespondenceSet& matches, const Settings& settings) {
   PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
   const std::vector<bool> labels = label_inliers(matches, truth.target_from_source, settings.threshold_pr);
+  record.score = score_grouping(labels, record.found.selected);
   Indices right;
   for (int row = 0; row < matches.size(); ++row)
     if (labels[static_cast<std::size_t>(row)]) right.push_back(row);
   truth.overlap = matches.source_points(right, Eigen::all);
-  return truth;
+  judge_pose(record, truth, matches.resolution);
 }
 
-std::string in_words(const RefinedPose& pose, const std::optional<PoseErrors>& errors) {
+std::string in_words(const MethodRecord& record) {
+  const RefinedPose& pose = record.pose;
   if (!pose.target_from_source) return std::string("no pose: ") + to_text(pose.status);
   std::string text = std::string(to_text(pose.status)) + (pose.converged ? ", converged after " : ", stopped after ") +
                      std::to_string(pose.iterations) + " iterations, RMS residual " + fixed(pose.initial_rms_pr, 3) +
                      " -> " + fixed(pose.final_rms_pr, 3) + " pr, cost " + fixed(pose.initial_cost, 3) + " -> " +
                      fixed(pose.final_cost, 3) + " pr^2";
-  if (errors) {
-    text += "; rotation error " + fixed(errors->rotation_error_deg, 4) + " deg, translation error " +
-            fixed(errors->translation_error_pr, 4) + " pr";
-    if (errors->points) text += ", RMSE " + fixed(errors->points->rmse_pr, 4) + " pr";
+  if (record.errors) {
+    text += "; rotation error " + fixed(record.errors->rotation_error_deg, 4) + " deg, translation error " +
+            fixed(record.errors->translation_error_pr, 4) + " pr";
+    if (record.errors->points) text += ", RMSE " + fixed(record.errors->points->rmse_pr, 4) + " pr";
   }
   return text;
 }
@@ -67,20 +70,20 @@ int refine(Settings settings) {
     throw UsageError("--loss-scale-pr: expected a finite length above 0");
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
-  std::optional<PairTruth> truth;
-  if (!settings.truth.empty()) truth = truth_of(matches, settings);
   std::optional<RigidTransform> start;
   if (!settings.start.empty()) start = read_transform(settings.start);
-  const RefinedPose pose = refine_rigid(matches, group.selected, settings.options, start);
-  std::optional<PoseErrors> errors;
-  if (truth && pose.target_from_source) errors = pose_errors(*pose.target_from_source, *truth, matches.resolution);
+  MethodRecord record;
+  record.found.selected = group.selected;
+  record.pose = refine_rigid(matches, group.selected, settings.options, start);
+  if (!settings.truth.empty()) judge(record, matches, settings);
 
+  const RefinedPose& pose = record.pose;
   if (pose.target_from_source && (!settings.json || !settings.output.empty()))
     put(settings.output, transform_text(*pose.target_from_source));
   if (settings.json)
-    put("", to_json(pose, errors));
+    put("", pose_json(record));
   else
-    say(in_words(pose, errors));
+    say(in_words(record));
   if (!pose.target_from_source && !settings.output.empty()) remove_file(settings.output);  // no pose, no file of one
   return kOk;
 }
@@ -92,7 +95,9 @@ void add_refine(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds the errors of the pose")
+  command
+      ->add_option("--truth", settings->truth,
+                   "True target_from_source, a 4x4 matrix: adds the errors of the pose and of its start")
       ->type_name("FILE");
   command->add_option("--loss", settings->loss, "What a residual costs: " + loss_names(", "))->capture_default_str();
   command
@@ -101,7 +106,7 @@ void add_refine(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--start", settings->start,
-                   "Where to start, a 4x4 matrix (default: the least-squares fit of the selection)")
+                   "Where to start, a 4x4 matrix (default: the least-squares fit to the selection)")
       ->type_name("FILE");
   command
       ->add_option("--threshold-pr", settings->threshold_pr,

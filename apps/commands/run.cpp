@@ -5,8 +5,9 @@
 
 #include "apps/commands/commands.h"
 #include "apps/dense_refinement.h"
+#include "apps/explain.h"
 #include "apps/progress.h"
-#include "apps/report.h"
+#include "apps/report_pair.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -21,7 +22,7 @@ struct Settings {
   int repeat = 1;
   std::uint64_t memory_limit = 0;
   MatchSettings match;
-  bool dense = false, json = false, verbose = false;
+  bool dense = false, explain = false, json = false, verbose = false;
 };
 
 /// "all" or names between commas, each once.
@@ -50,12 +51,27 @@ struct PairRun {
   std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the floor
   std::vector<bool> labels;                  ///< with a truth: which matches are right
   std::optional<FrameRepeatability> frames;  ///< with a truth
+  PairCounts counts;                         ///< with an explanation
+  std::vector<Explanation> explanations;     ///< where asked for: of the pair, then of each method
 
   std::optional<int> true_matches() const {
     if (!truth) return std::nullopt;
     return static_cast<int>(std::count(labels.begin(), labels.end(), true));
   }
 };
+
+Json explanation_json(const PairRun& run) {
+  Json methods = Json::array();
+  for (std::size_t i = 1; i < run.explanations.size(); ++i) {
+    const Explanation& method = run.explanations[i];
+    methods.push_back({{"method", method.method}, {"cause", to_text(method.cause)}, {"text", method.text}});
+  }
+  return {{"success_pr", kSuccessPr},
+          {"keypoints_in_overlap", run.counts.keypoints_in_overlap},
+          {"cause", to_text(run.explanations[0].cause)},
+          {"text", run.explanations[0].text},
+          {"methods", methods}};
+}
 
 Json to_json(const PairRun& run, const Settings& settings) {
   Json methods = Json::array(), options = Json::object(), bounds = Json::array();
@@ -65,20 +81,22 @@ Json to_json(const PairRun& run, const Settings& settings) {
     options[run.methods[i]] = corral::to_json(run.groupers[i].options);
   }
   for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));
-  return {{"source", settings.source},
-          {"target", settings.target},
-          {"resolution", run.pair.report.resolution},
-          {"matches", run.pair.matches.size()},
-          {"true_matches", json_or_null(run.true_matches())},
-          {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
-          {"methods", methods},
-          {"bounds", run.truth ? bounds : Json(nullptr)},
-          {"details",
-           {{"matching", corral::to_json(settings.match)},
-            {"threshold_pr", settings.threshold_pr},
-            {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
-            {"repeat", settings.repeat},
-            {"options", options}}}};
+  Json json = {{"source", settings.source},
+               {"target", settings.target},
+               {"resolution", run.pair.report.resolution},
+               {"matches", run.pair.matches.size()},
+               {"true_matches", json_or_null(run.true_matches())},
+               {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
+               {"methods", methods},
+               {"bounds", run.truth ? bounds : Json(nullptr)},
+               {"details",
+                {{"matching", corral::to_json(settings.match)},
+                 {"threshold_pr", settings.threshold_pr},
+                 {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
+                 {"repeat", settings.repeat},
+                 {"options", options}}}};
+  if (settings.explain) json["explanation"] = explanation_json(run);
+  return json;
 }
 
 /// Every intermediate file of the run, all or none; what an earlier run left of other methods goes.
@@ -93,8 +111,7 @@ void write_folder(const PairRun& run, const Settings& settings) {
     if (!record.failure.empty()) continue;
     files.push_back({folder + "group_" + record.method + ".csv",
                      group_text({run.pair.matches.size(), record.found.selected, record.found.scores})});
-    files.push_back(
-        {folder + "refine_" + record.method + ".json", json_text(corral::to_json(record.pose, record.errors))});
+    files.push_back({folder + "refine_" + record.method + ".json", json_text(pose_json(record))});
     if (record.pose.target_from_source)
       files.push_back({folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source)});
   }
@@ -106,6 +123,14 @@ void write_folder(const PairRun& run, const Settings& settings) {
       const auto is_new = [&](const FileContent& file) { return file.path == folder + name; };
       if (std::none_of(files.begin(), files.end(), is_new)) remove_file(folder + name);
     }
+}
+
+void explain(PairRun& run, const Mesh& target) {
+  const CorrespondenceSet& matches = run.pair.matches;
+  const Points seen =
+      points_in_overlap(matches.source_points, target, run.truth->target_from_source, matches.resolution);
+  run.counts = {matches.size(), static_cast<int>(seen.rows()), *run.true_matches(), run.truth->threshold_pr};
+  run.explanations = explain_pair(run.counts, run.bounds[0], run.records);
 }
 
 PairRun evaluate(const Settings& settings) {
@@ -139,6 +164,7 @@ PairRun evaluate(const Settings& settings) {
     dense.refine(run.records, run.truth);
     dense.refine(run.bounds, run.truth);
   }
+  if (settings.explain) explain(run, target);
   return run;
 }
 
@@ -154,11 +180,21 @@ std::string heading(const PairRun& run, const Settings& settings) {
   return text + "\n";
 }
 
+/// The tables, and below them what they mean.
+std::string in_words(const PairRun& run, const Settings& settings) {
+  std::string text = heading(run, settings) + methods_text(run.records, run.bounds);
+  if (settings.dense) text += "\ndense refinement, points to planes:\n" + dense_text(run.records, run.bounds);
+  if (settings.explain) text += "\n";
+  for (const Explanation& explanation : run.explanations) text += explanation.method + ": " + explanation.text + ".\n";
+  return text;
+}
+
 int run_pair(Settings settings) {
   check_usage(settings.match);
   settings.match.inspect = settings.verbose;
   check_threshold(settings.threshold_pr);
   if (settings.repeat < 1) throw UsageError("--repeat: expected at least 1");
+  if (settings.explain && settings.truth.empty()) throw UsageError("--explain: needs --truth");
   const PairRun run = evaluate(settings);
   if (settings.verbose)
     say(stage_report(run.pair.report));
@@ -168,9 +204,7 @@ int run_pair(Settings settings) {
   if (settings.json)
     put("", to_json(run, settings));
   else
-    put("",
-        heading(run, settings) + methods_text(run.records, run.bounds) +
-            (settings.dense ? "\ndense refinement, points to planes:\n" + dense_text(run.records, run.bounds) : ""));
+    put("", in_words(run, settings));
   const bool failed =
       std::any_of(run.records.begin(), run.records.end(), [](const auto& record) { return !record.failure.empty(); });
   return failed ? kPartial : kOk;
@@ -194,6 +228,9 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--dense", settings->dense,
                     "Lay the whole surfaces on each other from every pose, reported in a table of its own");
+  command->add_flag(
+      "--explain", settings->explain,
+      "Say in words where the pair was won or lost, before the grouping and by each method; needs --truth");
   add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
@@ -201,8 +238,12 @@ void add_run(CLI::App& app, Action& action) {
   command->footer(
       "With a truth, the row 'oracle' (all right matches) shows what a perfect grouper would do for the pair, and "
       "'floor'\n"
-      "(all matches) what none at all would.\n"
-      "Examples:\n  corral run model.ply scene.ply --truth truth.txt\n"
+      "(all matches) what none at all would. A pose registers the pair if its mean error over the overlap is at most 5 "
+      "pr;\n"
+      "the outcome is 'found' if the fit to the selection and the refined pose do, 'saved' if only the refined pose "
+      "does,\n"
+      "'spoiled' if only the fit does, else 'lost'. ADD is the mean error over the whole source in its diameters.\n"
+      "Examples:\n  corral run model.ply scene.ply --truth truth.txt --explain\n"
       "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
   command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// corral score: precision and recall of a selection.
+// corral score: precision and recall of a selection, and where the pose behind it leads.
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/report_pair.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"
@@ -12,28 +12,52 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string matches, group, truth;
+  std::string matches, group, truth, source, target;
   double threshold_pr = 4;
   bool json = false;
 };
 
+/// The least-squares fit to the selection against the truth; without the meshes, over no points.
+MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group, const Settings& settings) {
+  PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
+  if (!settings.source.empty())
+    truth = pair_truth(read_surface(settings.source), read_surface(settings.target), truth.target_from_source,
+                       matches.resolution, settings.threshold_pr);
+  MethodRecord record;
+  record.score =
+      score_grouping(label_inliers(matches, truth.target_from_source, settings.threshold_pr), group.selected);
+  record.pose.initial = refine_rigid(matches, group.selected).initial;
+  judge_pose(record, truth, matches.resolution);
+  return record;
+}
+
+/// Those of the fit where there is one, over points where the meshes are known.
+std::vector<TableColumn> columns(const std::optional<PoseErrors>& fit) {
+  std::vector<TableColumn> columns = {
+      {"matches", "matches"},        {"selected", "selected"}, {"correct", "correct"}, {"true matches", "true_matches"},
+      {"precision", "precision", 4}, {"recall", "recall", 4},  {"F1", "f1", 4}};
+  const std::vector<TableColumn> of_fit = {{"fit rot err deg", "initial_rotation_error_deg", 4},
+                                           {"transl err pr", "initial_translation_error_pr", 4},
+                                           {"mean err pr", "initial_mean_error_pr", 4},
+                                           {"RMSE pr", "initial_rmse_pr", 4},
+                                           {"ADD", "initial_add_share", 4}};
+  if (fit) columns.insert(columns.end(), of_fit.begin(), fit->points ? of_fit.end() : of_fit.begin() + 2);
+  return columns;
+}
+
 int score(const Settings& settings) {
   check_threshold(settings.threshold_pr);
+  if (settings.source.empty() != settings.target.empty())
+    throw UsageError("--source and --target: expected both meshes or none");
   const CorrespondenceSet matches = read_matches(settings.matches);
-  const GroupTable group = read_group_of(settings.group, matches.size());
-  const RigidTransform truth = read_transform(settings.truth);
-  const GroupingScore scored = score_grouping(label_inliers(matches, truth, settings.threshold_pr), group.selected);
-  if (settings.json) {
-    Json json = to_json(scored);
-    json["threshold_pr"] = settings.threshold_pr;
+  const MethodRecord record = judge_fit(matches, read_group_of(settings.group, matches.size()), settings);
+  Json json = to_json(*record.score);
+  json["threshold_pr"] = settings.threshold_pr;
+  add_errors(json, "initial_", record.initial_errors, !settings.source.empty());
+  if (settings.json)
     put("", json);
-  } else {
-    TextTable table({"matches", "selected", "correct", "true matches", "precision", "recall", "F1"});
-    table.add({std::to_string(scored.matches), std::to_string(scored.selected), std::to_string(scored.correct),
-               std::to_string(scored.true_matches), fixed(scored.precision, 4), fixed(scored.recall, 4),
-               fixed(scored.f1, 4)});
-    put("", table.str());
-  }
+  else
+    put("", table_text({json}, columns(record.initial_errors)));
   return kOk;
 }
 
@@ -45,7 +69,7 @@ void check_threshold(double threshold_pr) {
 }
 
 void add_score(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("score", "Precision, recall and F1 of a selection against a true pose");
+  auto* command = app.add_subcommand("score", "Precision, recall and pose error of a selection against a true pose");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
@@ -54,8 +78,14 @@ void add_score(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
       ->capture_default_str();
-  command->add_flag("--json", settings->json, "As JSON; null where a ratio is undefined");
-  command->footer("Example:\n  corral score matches.csv group.csv --truth truth.txt --threshold-pr 4");
+  command->add_option("--source", settings->source, "Source mesh: adds RMSE over the overlap and ADD, with --target")
+      ->type_name("FILE");
+  command->add_option("--target", settings->target, "Target mesh")->type_name("FILE");
+  command->add_flag("--json", settings->json, "As JSON; null where a value is undefined");
+  command->footer(
+      "The pose is the least-squares fit to the selection; 'corral refine --truth' judges the refined one.\n"
+      "Examples:\n  corral score matches.csv group.csv --truth truth.txt --threshold-pr 4\n"
+      "  corral score matches.csv group.csv --truth truth.txt --source model.ply --target scene.ply --json");
   command->callback([settings, &action] { action = [settings] { return score(*settings); }; });
 }
 
