@@ -31,13 +31,17 @@ struct Dataset {
   std::string path(const std::string& file) const;  ///< of a file of the set, from where the program runs
 };
 
+/// What the commands that make a set write first, so that a set without a manifest can be told from none.
+constexpr char kRecipeName[] = "recipe.txt";
+
 /// Reads the manifest; looks at none of the files that it names.
 ///
 ///   dataset.toml   name (required), kind, units, resolution, provenance, licence, citation (a list)
 ///   pairs.csv      pair,source,target,truth, then any attributes
 ///
 /// Throws IoError naming file and place: an unknown or doubled key, a wrong kind, no pairs, a doubled or empty pair name,
-/// an empty source or target.
+/// an empty source or target,
+/// a set that is only half made.
 Dataset read_dataset(const std::string& folder);
 
 /// The two files as text; reading them back gives the same set.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 
 #include "io/file.h"
@@ -18,6 +20,31 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
+using Parser = Mesh (*)(const std::string& path, std::string_view content);
+Parser parser_of(const std::string& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".ply"   ? parse_ply
+         : ending == ".off" ? parse_off
+         : ending == ".obj" ? parse_obj
+         : ending == ".stl" ? parse_stl
+         : ending == ".xyz" ? parse_xyz
+         : ending == ".pcd" ? parse_pcd
+                            : nullptr;
+}
+
+std::string ply_header(const std::string& format, const Mesh& mesh) {
+  std::string text = "ply\nformat " + format + " 1.0\nelement vertex " + std::to_string(mesh.vertices.rows()) +
+                     "\nproperty double x\nproperty double y\nproperty double z\n";
+  if (mesh.triangles.rows() > 0)
+    text += "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
+  return text + "end_header\n";
+}
+
+/// The lowest byte first, on any machine.
+void append_bytes(std::string& text, std::uint64_t bits, int bytes) {
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(static_cast<unsigned char>(bits >> (8 * i)));
+}
+
 }  // namespace
 
 void TriangleBuilder::add_polygon(const Indices& corners) {
@@ -30,15 +57,10 @@ Triangles TriangleBuilder::build() const {
       corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
 }
 
+bool is_mesh_name(const std::string& path) { return parser_of(path) != nullptr; }
+
 Mesh read_mesh(const std::string& path) {
-  const std::string ending = ending_of(path);
-  const auto parser = ending == ".ply"   ? parse_ply
-                      : ending == ".off" ? parse_off
-                      : ending == ".obj" ? parse_obj
-                      : ending == ".stl" ? parse_stl
-                      : ending == ".xyz" ? parse_xyz
-                      : ending == ".pcd" ? parse_pcd
-                                         : nullptr;
+  const Parser parser = parser_of(path);
   const std::string content = read_file(path);
   if (!parser)
     throw IoError(path, "", "unknown mesh format, expected a name that ends in " + std::string(kMeshEndings));
@@ -47,17 +69,30 @@ Mesh read_mesh(const std::string& path) {
 }
 
 std::string ply_text(const Mesh& mesh) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.rows()) +
-                     "\nproperty double x\nproperty double y\nproperty double z\n";
-  if (mesh.triangles.rows() > 0)
-    text += "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
-  text += "end_header\n";
+  std::string text = ply_header("ascii", mesh);
   for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
     text += to_text(mesh.vertices(row, 0)) + " " + to_text(mesh.vertices(row, 1)) + " " +
             to_text(mesh.vertices(row, 2)) + "\n";
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row)
     text += "3 " + std::to_string(mesh.triangles(row, 0)) + " " + std::to_string(mesh.triangles(row, 1)) + " " +
             std::to_string(mesh.triangles(row, 2)) + "\n";
+  return text;
+}
+
+std::string binary_ply_text(const Mesh& mesh) {
+  std::string text = ply_header("binary_little_endian", mesh);
+  text.reserve(text.size() + 24 * static_cast<std::size_t>(mesh.vertices.rows()) +
+               13 * static_cast<std::size_t>(mesh.triangles.rows()));
+  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
+    for (int axis = 0; axis < 3; ++axis) {
+      std::uint64_t bits;
+      std::memcpy(&bits, &mesh.vertices(row, axis), sizeof bits);
+      append_bytes(text, bits, 8);
+    }
+  for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row) {
+    text += '\3';
+    for (int i = 0; i < 3; ++i) append_bytes(text, static_cast<std::uint32_t>(mesh.triangles(row, i)), 4);
+  }
   return text;
 }
 

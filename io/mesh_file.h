@@ -12,6 +12,9 @@ namespace corral {
 /// The endings of the names that read_mesh takes, in words for messages.
 constexpr std::string_view kMeshEndings = ".ply, .off, .obj, .stl, .xyz or .pcd";
 
+/// Whether read_mesh knows the ending of the name.
+bool is_mesh_name(const std::string& path);
+
 /// Reads a mesh or a point cloud; the format is that of the name's ending: .ply (ASCII and both binaries), .off, .obj,
 /// .stl (ASCII and binary), and for clouds only .xyz and .pcd (ASCII and binary, not compressed).
 /// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
@@ -28,7 +31,10 @@ Mesh read_mesh(const std::string& path);
 /// The mesh as ASCII PLY in double precision; reading it back gives the same mesh.
 std::string ply_text(const Mesh& mesh);
 
-/// Writes that to a name that ends in .ply. Throws IoError.
+/// The same as binary PLY, little-endian: about half as long, and far faster to write and read.
+std::string binary_ply_text(const Mesh& mesh);
+
+/// Writes the first to a name that ends in .ply. Throws IoError.
 void write_mesh(const std::string& path, const Mesh& mesh);
 
 /// Throws IoError unless the name ends in .ply: what is written there is PLY.

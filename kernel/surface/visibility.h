@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh.h"
 #include "kernel/surface/neighborhood.h"
@@ -13,5 +15,24 @@ namespace corral {
 /// Source    the evaluation programs behind [yang2017evaluation]'s successors (RMSE on U3M).
 Points overlap_points(const Points& source, const PointIndex& target_index, const RigidTransform& target_from_source,
                       double threshold);
+
+/// How much two surfaces share, 0 .. 1: the vertices with one of the other surface within `threshold` (mesh units; 2 pr in
+/// the field), counted on both, the smaller count over the smaller number of vertices. 0 if one has none.
+///
+/// Source    [yang2017evaluation] for the ratio; it leaves the threshold and the direction open.
+double overlap_share(const Points& source, const Points& target, const RigidTransform& target_from_source,
+                     double threshold);
+
+/// The part of a surface's area that another shares, 0 .. 1: triangles whose three corners have a point of the other within
+/// `threshold` (mesh units). Absent for a surface without area. Of a model and the scene that it stands in,
+///
+///   occlusion = 1 - shared_area(model, scene)     clutter = 1 - shared_area(scene, model)
+///
+/// Source    [mian2006recognition] for both ratios.
+std::optional<double> shared_area(const Mesh& surface, const Points& other, const RigidTransform& other_from_surface,
+                                  double threshold);
+
+/// Area of all triangles in squared mesh units.
+double surface_area(const Mesh& mesh);
 
 }  // namespace corral

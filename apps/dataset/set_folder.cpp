@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "apps/dataset/set_folder.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "io/file.h"
+#include "io/mesh_file.h"
+#include "kernel/error.h"
+#include "kernel/random.h"
+
+namespace corral {
+
+namespace fs = std::filesystem;
+
+SetFolder::SetFolder(const std::string& folder, const std::string& recipe) : folder_(folder) {
+  make_folder(folder);
+  const std::string note = path(kRecipeName);
+  if (!fs::exists(note) && fs::exists(path("dataset.toml")))
+    throw IoError(folder, "", "holds a data set that was not made here, expected an empty folder");
+  if (fs::exists(note) && read_file(note) != recipe)
+    throw IoError(folder, "",
+                  "holds a data set made otherwise (see " + std::string(kRecipeName) +
+                      "), expected an empty folder or the same input and options");
+  check_writable(path("dataset.toml"));
+  if (!fs::exists(note)) write_file(note, recipe);
+}
+
+std::string SetFolder::path(const std::string& file) const { return (fs::path(folder_) / file).string(); }
+
+bool SetFolder::has(const std::string& file) const { return fs::exists(path(file)); }
+
+void SetFolder::put(const std::string& file, const std::string& content) const {
+  make_folder(fs::path(path(file)).parent_path().string());
+  write_file(path(file), content);
+}
+
+void SetFolder::finish(const Dataset& dataset) const {
+  write_files({{path("pairs.csv"), pairs_csv_text(dataset)}, {path("dataset.toml"), dataset_toml_text(dataset)}});
+}
+
+std::vector<std::string> mesh_files(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_mesh_name(entry->path().string()) && entry->is_regular_file(error)) files.push_back(entry->path().string());
+  if (error) throw IoError(folder, "", "cannot be read as a folder (" + error.message() + ")");
+  if (files.empty()) throw IoError(folder, "", "no meshes, expected files that end in " + std::string(kMeshEndings));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string checksum(const std::string& path) { return std::to_string(derive_seed(0, read_file(path))); }
+
+std::string pair_word(const std::string& file) {
+  std::string word = fs::path(file).stem().string();
+  const auto fits = [](unsigned char letter) {
+    return letter < 128 && (std::isalnum(letter) || letter == '.' || letter == '_' || letter == '+' || letter == '-');
+  };
+  std::replace_if(
+      word.begin(), word.end(), [&](unsigned char letter) { return !fits(letter); }, '-');
+  if (!word.empty() && word[0] == '.') word[0] = '-';
+  return word;
+}
+
+}  // namespace corral

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/dataset_file.h"
+
+namespace corral {
+
+/// A data set on its way into a folder. Its recipe is written first, its manifest last: an interrupted making goes on where
+/// it was, and what is half made has no manifest. Files appear whole or not at all.
+class SetFolder {
+ public:
+  /// `recipe`: all that the files depend on, in lines. Makes the folder. Throws IoError if it holds a set of another recipe,
+  /// or one that no recipe made, or cannot be written to.
+  SetFolder(const std::string& folder, const std::string& recipe);
+
+  std::string path(const std::string& file) const;  ///< of a file of the set
+  bool has(const std::string& file) const;          ///< from the making before this one
+  void put(const std::string& file, const std::string& content) const;
+  void finish(const Dataset& dataset) const;  ///< writes the manifest
+
+ private:
+  std::string folder_;
+};
+
+/// The mesh files in a folder, sorted by name. Throws IoError if the folder cannot be read or holds none.
+std::vector<std::string> mesh_files(const std::string& folder);
+
+/// A number that changes with the content of a file, for recipes.
+std::string checksum(const std::string& path);
+
+/// The name of a file without folders and ending, with - for each letter that no name of a pair may have.
+std::string pair_word(const std::string& file);
+
+}  // namespace corral
