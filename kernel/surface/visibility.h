@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernel/rigid_transform.h"
@@ -43,5 +44,14 @@ struct Visibility {
 /// Source    [mian2006recognition], [mian2010repeatability].
 /// Returns   clutter 1 where nothing at all is seen.
 std::vector<Visibility> measure_visibility(const PosedSurfaces& scene, const RangeScan& scan);
+
+/// The part of a surface's area that another shares, 0 .. 1: triangles whose three corners have a point of the other within
+/// `threshold` (mesh units). Absent for a surface without area. Of a model and the scene that it stands in,
+///
+///   occlusion = 1 - shared_area(model, scene)     clutter = 1 - shared_area(scene, model)
+///
+/// Source    [mian2006recognition] for both ratios.
+std::optional<double> shared_area(const Mesh& surface, const Points& other, const RigidTransform& other_from_surface,
+                                  double threshold);
 
 }  // namespace corral
