@@ -118,16 +118,16 @@ const panels = (() => {
       const mean = meanOf(experiment, experiment.levels[column], shown[series]);
       return [`${shown[series]} at ${experiment.levels[column]}`, ...(mean ? linesOf(mean) : ['no value'])];
     };
-    const range = metric.logarithmic ? {min: undefined, max: undefined} : {min: 0, max: 1};
+    const range = metric.logarithmic ? {min: undefined, max: undefined} : {min: -0.03, max: 1.03};  // room for markers at the ends
     const chart = new Chart(canvas, {
       type: 'line',
       data: {labels: experiment.levels, datasets: shown.map(method => datasetOf(experiment, metric, method))},
       options: {
         maintainAspectRatio: false, interaction: {mode: 'nearest', intersect: true}, layout: {padding: {top: 6, right: 8}},
         scales: {
-          x: {title: {display: true, text: experiment.axis}, grid: {display: false}, ticks: {maxRotation: 40}, offset: experiment.levels.length === 1},
+          x: {title: {display: true, text: experiment.axis}, grid: {display: false}, ticks: {maxRotation: 40}, offset: true},
           y: {...range, type: metric.logarithmic ? 'logarithmic' : 'linear', grid: {color: '#eceff1'},
-            ticks: {maxTicksLimit: 6, callback: value => metric.logarithmic ? value : Number(value.toFixed(3))}},
+            ticks: {maxTicksLimit: 8, includeBounds: false, callback: value => metric.logarithmic ? value : Number(value.toFixed(3))}},
         },
         plugins: {
           legend: {display: false},
