@@ -155,7 +155,7 @@ TEST_F(PageInBrowser, PanelsShowTheSummary) {
   EXPECT_TRUE(series["data"][1].is_null());  // a gap, not 0
   EXPECT_EQ(js("panels.charts[1].data.labels"), Json({"0.1", "0.2", "0.4"}));
   EXPECT_EQ(js("new Set(panels.charts[0].data.datasets.slice(0, 3).map(d => d.borderColor)).size"), 3);
-  EXPECT_EQ(js("new Set(panels.charts[0].data.datasets.slice(0, 3).map(d => d.pointStyle)).size"), 3);
+  EXPECT_EQ(js("new Set(panels.charts[0].data.datasets.slice(0, 3).map(d => d.pointStyle + d.rotation)).size"), 3);
   EXPECT_THAT(js("document.querySelector('#panels h3').textContent").get<std::string>(), HasSubstr(kTitle));
   EXPECT_THAT(js("document.querySelector('#panels .note').textContent").get<std::string>(),
               HasSubstr("3 failures"));  // of three groupers
@@ -192,9 +192,9 @@ TEST_F(PageInBrowser, PanelsZoomAndAreReachedByKeys) {
 
   browser_->press("ArrowRight");
   browser_->press("ArrowDown");
-  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("nnsr at 0.1, precision"));
+  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("NNSR at 0.1, precision"));
   browser_->press("ArrowRight");
-  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("nnsr at 0.2, pairs 0"));
+  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("NNSR at 0.2, pairs 0"));
   browser_->press("ArrowRight");
   browser_->press("Enter");
   EXPECT_EQ(js("[pairView.state.level, byId('left-method').value]"), Json({"0.4", "nnsr"}));
@@ -290,7 +290,7 @@ TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
   EXPECT_GT(right["source"], 5000);
   EXPECT_NE(left["right"], right["right"]);  // two groupers kept other matches
   EXPECT_THAT(js("byId('left-caption').textContent + byId('right-caption').textContent").get<std::string>(),
-              ::testing::AllOf(HasSubstr("ss "), HasSubstr("gc ")));
+              ::testing::AllOf(HasSubstr("SS "), HasSubstr("GC ")));
   const auto [x, y] = place_of("#view");
   browser_->drag(x - 300, y, x - 150, y + 40);
   const Json turned = pixels("right");
