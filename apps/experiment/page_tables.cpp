@@ -46,7 +46,7 @@ Json facts_of(const RunFolder& run) {
   }
 }
 
-/// The rows of summary.csv that belong to the experiment: names of level and method, the rest as numbers.
+/// The rows that belong to the experiment: names of level and method, the rest as numbers.
 Json means_of(const ExperimentInfo& experiment, const std::string& path, const CsvTable& summary) {
   Json means = Json::array();
   const auto cell = [&](std::size_t row, const char* name) {
@@ -68,17 +68,30 @@ Json means_of(const ExperimentInfo& experiment, const std::string& path, const C
   return means;
 }
 
+/// The means of a study, or the times of a run that took nothing else.
+CsvTable means_table(const RunFolder& run, std::string& path) {
+  path = path_in(run, "summary.csv");
+  std::vector<std::string> columns = {"experiment", "level",  "method", "pairs",
+                                      "precision",  "recall", "f1",     "success_5pr"};
+  if (!std::filesystem::exists(path) && std::filesystem::exists(path_in(run, "time.csv"))) {
+    path = path_in(run, "time.csv");
+    columns = {"experiment", "level", "method", "runs", "median_ms"};
+  }
+  CsvTable table = read_csv(path);
+  for (const std::string& name : columns)
+    if (table.column(name) < 0) throw IoError(path, "header", "the column " + name + " is missing");
+  return table;
+}
+
 Json experiments_of(const RunFolder& run, int number) {
-  const std::string path = path_in(run, "summary.csv");
-  const CsvTable summary = read_csv(path);
-  for (const char* name : {"experiment", "level", "method", "pairs", "precision", "recall", "f1", "success_5pr"})
-    if (summary.column(name) < 0) throw IoError(path, "header", std::string("the column ") + name + " is missing");
+  std::string path;
+  const CsvTable summary = means_table(run, path);
   Json experiments = Json::array();
   for (const ExperimentInfo& experiment : run.experiments) {
     Json levels = Json::array(), bounds = Json::array();
     for (const StudyLevel& level : experiment.levels) levels.push_back(level.label);
     for (const StudyRecord& record : run.records)
-      if (record.experiment == experiment.name && is_bound(record.method) &&
+      if (record.experiment == experiment.name && is_bound(record) &&
           std::find(bounds.begin(), bounds.end(), record.method) == bounds.end())
         bounds.push_back(record.method);
     experiments.push_back({{"run", number},
@@ -143,7 +156,7 @@ void add_record(Json& columns, Words& words, int run, const StudyRecord& record)
 
 }  // namespace
 
-bool is_bound(const std::string& method) { return method == "oracle" || method == "floor"; }
+bool is_bound(const StudyRecord& record) { return record.method == "oracle" || record.method == "floor"; }
 
 Json page_tables(const std::vector<RunFolder>& runs) {
   Json folders = Json::array(), experiments = Json::array(), columns = Json::object();

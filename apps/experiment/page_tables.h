@@ -11,12 +11,12 @@ namespace corral {
 /// What a page shows in figures and tables, as JSON of numbers rounded to five digits:
 ///   runs         {folder, facts}: the manifest without its experiments and pairs
 ///   experiments  {run, name, title, figure, dataset, attribute, axis, levels, methods, bounds, threshold_pr,
-///                least_true_matches, means}, means: the rows of summary.csv
+///                least_true_matches, means}, means: the rows of summary.csv, or else time.csv
 ///   records      columns: {name: [a cell per record]}; names that repeat are numbers of `words`
-/// Throws IoError for a manifest.json or summary.csv that is missing or wrong.
+/// Throws IoError for a file that is missing or wrong.
 nlohmann::ordered_json page_tables(const std::vector<RunFolder>& runs);
 
-/// The methods of a run's records that are no groupers but bounds: "oracle", "floor".
-bool is_bound(const std::string& method);
+/// No grouper but a bound: the oracle or the floor.
+bool is_bound(const StudyRecord& record);
 
 }  // namespace corral

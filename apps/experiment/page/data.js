@@ -3,6 +3,7 @@
 'use strict';
 
 const data = JSON.parse(document.getElementById('data').textContent);
+data.experiments.sort((a, b) => (a.figure || '~').localeCompare(b.figure || '~'));  // panels in the paper's order, others behind them
 
 /// An element with attributes and children; texts become text, never markup. An attribute that is false or null is left out.
 function element(tag, attributes = {}, ...children) {
@@ -42,16 +43,20 @@ for (const record of records) {
 // Every grouper has one colour (Okabe and Ito's, for every kind of sight), one marker and one dash, in all of the page.
 const bounds = unique(data.experiments.flatMap(e => e.bounds));
 const methods = unique([...data.experiments.flatMap(e => e.methods), ...bounds]);
-const styles = new Map(methods.map((method, place) => {
-  if (bounds.includes(method)) return [method, {color: '#8b949d', marker: 'line', dash: method === 'oracle' ? [2, 3] : [7, 3]}];
-  const colors = ['#E69F00', '#56B4E9', '#009E73', '#0072B2', '#D55E00', '#CC79A7', '#000000', '#8C6D1F'];
-  const markers = [['circle', 0], ['rect', 0], ['triangle', 0], ['rectRot', 0], ['triangle', 180], ['crossRot', 0], ['star', 0], ['cross', 0]];
-  const known = ['ss', 'nnsr', 'ransac', 'st', 'gc', 'hough', 'si'].indexOf(method);
-  const others = methods.filter(m => !bounds.includes(m) && !['ss', 'nnsr', 'ransac', 'st', 'gc', 'hough', 'si'].includes(m));
-  const number = known >= 0 ? known : 7 + others.indexOf(method);
-  const [marker, rotation] = markers[number % 8];
-  return [method, {color: colors[number % 8], marker, rotation, dash: number < 8 ? [] : [5, 2]}];
+const knownStyles = {
+  ss: {label: 'SS', color: '#000000', marker: 'circle', dash: [5, 3]}, nnsr: {label: 'NNSR', color: '#e69f00', marker: 'rect', dash: []},
+  ransac: {label: 'RANSAC', color: '#0072b2', marker: 'triangle', dash: []}, st: {label: 'ST', color: '#cc79a7', marker: 'triangle', rotation: 180, dash: [9, 3]},
+  gc: {label: 'GC', color: '#009e73', marker: 'rectRot', dash: []}, hough: {label: '3DHV', color: '#56b4e9', marker: 'star', dash: [6, 2, 1, 2]},
+  si: {label: 'SI', color: '#d55e00', marker: 'circle', open: true, dash: [3, 2]},
+  oracle: {label: 'oracle', color: '#888888', marker: 'line', dash: [2, 3]}, floor: {label: 'floor', color: '#888888', marker: 'line', dash: [7, 4]},
+};
+const furtherColors = ['#882255', '#999933', '#332288', '#aa4499', '#117733', '#661100', '#6699cc', '#aa4466'];
+const furtherMarkers = ['crossRot', 'cross', 'rectRounded', 'star', 'triangle'];
+const styles = new Map(methods.map(method => {
+  const place = methods.filter(m => !(m in knownStyles)).indexOf(method);
+  return [method, knownStyles[method] || {label: method, color: furtherColors[place % 8], marker: furtherMarkers[place % 5], dash: place < 8 ? [] : [4, 2]}];
 }));
+const labelOf = method => (styles.get(method) || {label: method}).label;
 
 /// Bytes of a base64 text.
 const bytesOf = text => Uint8Array.from(atob(text), character => character.charCodeAt(0));

@@ -104,8 +104,9 @@ const pairView = (() => {
     geometry.setAttribute('position', new THREE.BufferAttribute(ends, 3));
     const color = colors[name] || 0x0b5cad;
     const drawn = new THREE.Group();
-    drawn.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color, transparent: true, opacity: {missed: 0.4, wrong: 0.9}[name] || 0.5})));
+    drawn.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color, transparent: true, opacity: Math.max(0.2, Math.min(0.8, 150 / rows.length)) * (name === 'missed' ? 0.6 : 1)})));
     if (name !== 'missed') drawn.add(new THREE.Points(geometry, new THREE.PointsMaterial({color, size: 4, sizeAttenuation: false})));
+    drawn.children.forEach(part => { part.renderOrder = -rows.length; });  // the few over the many
     drawn.name = name;
     drawn.userData.count = rows.length;
     return drawn;
@@ -131,7 +132,7 @@ const pairView = (() => {
 
   function captionOf(scene, method, groups) {
     const record = records.find(r => keyOf(r) === keyOf(scene) && r.method === method && r.place === state.experiment && (state.level === null || r.level === state.level));
-    const parts = [element('strong', {}, method), ' '];
+    const parts = [element('strong', {}, labelOf(method)), ' '];
     const say = (name, text) => parts.push(element('span', {class: name}, `${groups[name].length} ${text}`), ' · ');
     if (scene.distance) { say('right', 'right'); say('wrong', 'wrong'); say('missed', 'missed'); }
     else parts.push(`${groups.kept.length} kept, no truth to judge them · `);
@@ -151,7 +152,7 @@ const pairView = (() => {
     if (motions.source) {
       put(data.meshes[scene.source], motions.source, colors.source);
       const from = moved(scene.p, motions.source), to = moved(scene.q, motions.target);
-      for (const name of ['missed', 'right', 'kept', 'wrong']) {
+      for (const name of ['kept', 'missed', 'right', 'wrong']) {
         const box = byId(`show-${name}`);
         if (groups[name].length && (!box || box.checked)) three.add(lines(name, groups[name], from, to));
       }
@@ -254,13 +255,18 @@ const pairView = (() => {
     tick();
   }
 
-  const nameOf = scene => `${scene.pair} · ${scene.dataset}` + (data.runs.length > 1 ? ` · ${data.runs[scene.run].folder}` : '') +
-    (scenes.some(s => s !== scene && s.pair === scene.pair && s.dataset === scene.dataset) ? ` · ${scene.selection}` : '');
+  /// As long as it must be to tell the scenes apart.
+  function nameOf(scene) {
+    const parts = [scene.pair, scene.dataset, data.runs[scene.run].folder, scene.selection];
+    const same = count => scenes.filter(other => [other.pair, other.dataset, data.runs[other.run].folder, other.selection].slice(0, count)
+      .every((part, i) => part === parts[i])).length;
+    return parts.slice(0, [2, 3].find(count => same(count) === 1) || 4).join(' · ');
+  }
 
   function fillMethods(scene, left, right) {
     const known = methods.filter(method => method in scene.selected);
-    byId('left-method').replaceChildren(...known.map(method => element('option', {value: method}, method)));
-    byId('right-method').replaceChildren(element('option', {value: ''}, 'nothing'), ...known.map(method => element('option', {value: method}, method)));
+    byId('left-method').replaceChildren(...known.map(method => element('option', {value: method}, labelOf(method))));
+    byId('right-method').replaceChildren(element('option', {value: ''}, 'nothing'), ...known.map(method => element('option', {value: method}, labelOf(method))));
     byId('left-method').value = known.includes(left) ? left : known[0] || '';
     byId('right-method').value = known.includes(right) ? right : '';
   }

@@ -4,7 +4,7 @@
 
 const metrics = [
   {name: 'precision', title: 'Precision'}, {name: 'recall', title: 'Recall'}, {name: 'f1', title: 'F1'},
-  {name: 'success_5pr', title: 'Registration success'}, {name: 'time_ms', title: 'Time of grouping (ms, median)', logarithmic: true},
+  {name: 'success_5pr', title: 'Registration success'}, {name: 'median_ms', title: 'Median time of grouping (ms)', logarithmic: true},
 ];
 
 const panels = (() => {
@@ -22,7 +22,7 @@ const panels = (() => {
   function linesOf(mean) {
     const share = metrics.filter(m => isNumber(mean[m.name]))
       .map(m => `${m.title.toLowerCase()} ${fixed(mean[m.name], 3)}`);
-    const counts = ['pairs', 'excluded', 'empty', 'failed'].filter(name => isNumber(mean[name])).map(name => `${name} ${mean[name]}`);
+    const counts = ['pairs', 'excluded', 'empty', 'failed', 'runs'].filter(name => isNumber(mean[name])).map(name => `${name} ${mean[name]}`);
     return [...share, counts.join(', ')];
   }
 
@@ -82,8 +82,8 @@ const panels = (() => {
         const value = (meanOf(experiment, level, method) || {})[metric.name];
         return isNumber(value) ? value : null;
       }),
-      borderColor: style.color, backgroundColor: style.color, borderWidth: 1.6, borderDash: style.dash,
-      pointStyle: style.marker, rotation: style.rotation, pointBorderColor: style.color,
+      borderColor: style.color, backgroundColor: style.color, pointBackgroundColor: style.open ? '#fff' : style.color, borderWidth: 1.6, borderDash: style.dash,
+      pointStyle: style.marker, rotation: style.rotation || 0, pointBorderColor: style.color,
       pointRadius: bounds.includes(method) ? 0 : 4, pointHoverRadius: 6, pointHitRadius: 7, pointBorderWidth: 1.5,
       spanGaps: false, clip: 7, hidden: hidden.has(method),
     };
@@ -116,25 +116,25 @@ const panels = (() => {
     const shown = [...experiment.methods, ...experiment.bounds];
     const describe = (series, column) => {
       const mean = meanOf(experiment, experiment.levels[column], shown[series]);
-      return [`${shown[series]} at ${experiment.levels[column]}`, ...(mean ? linesOf(mean) : ['no value'])];
+      return [`${labelOf(shown[series])} at ${experiment.levels[column]}`, ...(mean ? linesOf(mean) : ['no value'])];
     };
-    const range = metric.logarithmic ? {min: undefined, max: undefined} : {min: 0, max: 1};
+    const range = metric.logarithmic ? {min: undefined, max: undefined} : {min: -0.03, max: 1.03};  // room for markers at the ends
     const chart = new Chart(canvas, {
       type: 'line',
       data: {labels: experiment.levels, datasets: shown.map(method => datasetOf(experiment, metric, method))},
       options: {
         maintainAspectRatio: false, interaction: {mode: 'nearest', intersect: true}, layout: {padding: {top: 6, right: 8}},
         scales: {
-          x: {title: {display: true, text: experiment.axis}, grid: {display: false}, ticks: {maxRotation: 40}, offset: experiment.levels.length === 1},
+          x: {title: {display: true, text: experiment.axis}, grid: {display: false}, ticks: {maxRotation: 40}, offset: true},
           y: {...range, type: metric.logarithmic ? 'logarithmic' : 'linear', grid: {color: '#eceff1'},
-            ticks: {maxTicksLimit: 6, callback: value => metric.logarithmic ? value : Number(value.toFixed(3))}},
+            ticks: {maxTicksLimit: 8, includeBounds: false, callback: value => metric.logarithmic ? value : Number(value.toFixed(3))}},
         },
         plugins: {
           legend: {display: false},
           tooltip: {backgroundColor: 'rgba(29, 35, 41, .93)', usePointStyle: true, displayColors: false, callbacks: {
             // Points on top of each other share one tooltip: then a line each.
             title: items => items.length > 1 ? `${items.length} groupers at ${items[0].label}` : items.length ? describe(items[0].datasetIndex, items[0].dataIndex)[0] : '',
-            label: item => item.chart.tooltip.dataPoints.length > 1 ? `${item.dataset.label} ${fixed(item.raw, 3)}` : describe(item.datasetIndex, item.dataIndex).slice(1)}},
+            label: item => item.chart.tooltip.dataPoints.length > 1 ? `${labelOf(item.dataset.label)} ${fixed(item.raw, 3)}` : describe(item.datasetIndex, item.dataIndex).slice(1)}},
         },
         onClick: (_, points) => {
           if (points.length && !chart.dragged) choosePoint(experiment, experiment.levels[points[0].index], shown[points[0].datasetIndex]);
@@ -151,14 +151,15 @@ const panels = (() => {
   function noteOf(experiment) {
     const perLevel = experiment.levels.map(level => experiment.means.find(m => m.level === level)).filter(Boolean);
     if (perLevel.length === 0) return 'No level of this experiment has a result.';
+    const gaps = perLevel.length < experiment.levels.length ? ` ${counted(experiment.levels.length - perLevel.length, 'level')} without a result: gaps.` : '';
+    if (perLevel.every(m => !isNumber(m.pairs))) return `Measured alone, on one thread.${gaps}`;
     const sum = (rows, name) => rows.reduce((total, row) => total + (row[name] || 0), 0);
     const pairs = perLevel.map(m => m.pairs), low = Math.min(...pairs), high = Math.max(...pairs);
     const failed = records.filter(r => r.place === experiment && r.status.startsWith('failed')).length;
     const own = experiment.means.filter(m => experiment.methods.includes(m.method));
     return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${experiment.threshold_pr} pr; ` +
       `${sum(perLevel, 'excluded')} excluded (fewer than ${counted(experiment.least_true_matches, 'right match', 'right matches')}); ` +
-      `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` +
-      (perLevel.length < experiment.levels.length ? ` ${counted(experiment.levels.length - perLevel.length, 'level')} without a result: gaps.` : '');
+      `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
   }
 
   function tableOf(experiment) {
@@ -168,7 +169,7 @@ const panels = (() => {
     return element('details', {}, element('summary', {}, 'Numbers'), element('div', {class: 'wide'}, element('table', {},
       element('thead', {}, element('tr', {}, ...names.map(name => element('th', {scope: 'col', class: textual.includes(name) && 'text'}, name)))),
       element('tbody', {}, ...experiment.means.map(mean => element('tr', {}, ...names.map(name =>
-        element('td', {class: textual.includes(name) && 'text'}, textual.includes(name) || Number.isInteger(mean[name]) ? String(mean[name]) : fixed(mean[name], 4)))))))));
+        element('td', {class: textual.includes(name) && 'text'}, name === 'method' ? labelOf(mean.method) : name === 'level' || Number.isInteger(mean[name]) ? String(mean[name]) : fixed(mean[name], 4)))))))));
   }
 
   function swatch(style) {
@@ -178,8 +179,9 @@ const panels = (() => {
     pen.setLineDash(style.dash);
     pen.stroke(new Path2D('M1 8H29'));
     pen.setLineDash([]);
+    if (style.open) pen.fillStyle = '#fff';
     if (style.marker !== 'line')
-      Chart.helpers.drawPoint(pen, {pointStyle: style.marker, rotation: style.rotation, radius: 4.5, borderWidth: 1.5}, 15, 8);
+      Chart.helpers.drawPoint(pen, {pointStyle: style.marker, rotation: style.rotation || 0, radius: 4.5, borderWidth: 1.5}, 15, 8);
     return canvas;
   }
 
@@ -196,7 +198,7 @@ const panels = (() => {
     choosePoint = onPoint;
     for (const method of methods) {
       const button = element('button', {type: 'button', 'aria-pressed': String(!hidden.has(method)), click: () => toggle(method, button)},
-        swatch(styles.get(method)), method);
+        swatch(styles.get(method)), labelOf(method));
       byId('legend').append(button);
     }
     for (const experiment of data.experiments) {

@@ -11,7 +11,7 @@ const recordTable = (() => {
     {title: 'Experiment', text: true, value: r => r.place ? experimentTitle(r.place) : r.experiment},
     {title: 'Level', text: true, value: r => r.level, key: r => r.place ? r.place.levels.indexOf(r.level) : -1},
     {title: 'Pair', text: true, value: r => r.pair},
-    {title: 'Grouper', text: true, value: r => r.method, key: r => methods.indexOf(r.method)},
+    {title: 'Grouper', text: true, value: r => labelOf(r.method), key: r => methods.indexOf(r.method)},
     {title: 'Matches', value: r => r.matches, decimals: 0},
     {title: 'Right', value: r => r.true_matches, decimals: 0},
     {title: 'Selected', value: r => r.selected, decimals: 0},
@@ -110,7 +110,7 @@ const recordTable = (() => {
     byId('records-table').tHead.append(element('tr', {}, ...columns.map(column =>
       element('th', {scope: 'col', class: column.text && 'text'}, element('button', {type: 'button', click: () => sortBy(column)}, column.title)))));
     fill('filter-experiment', [['', 'all'], ...data.experiments.map((e, i) => [i, experimentTitle(e) + (data.runs.length > 1 ? `, ${data.runs[e.run].folder}` : '')])]);
-    fill('filter-method', [['', 'all'], ...methods.map(method => [method, method])]);
+    fill('filter-method', [['', 'all'], ...methods.map(method => [method, labelOf(method)])]);
     fill('filter-outcome', [['', 'all'], ...Object.keys(outcomes).map(name => [name, name])]);
     fillLevels();
     byId('filter-experiment').addEventListener('change', () => { fillLevels(); refresh(); });
