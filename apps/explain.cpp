@@ -2,6 +2,7 @@
 #include "apps/explain.h"
 
 #include "apps/report.h"
+#include "kernel/number_text.h"
 
 namespace corral {
 namespace {
@@ -33,8 +34,9 @@ std::string start_of(const MethodRecord& record) {
 
 std::string dense_of(const MethodRecord& record) {
   if (!record.dense_errors || !record.dense_errors->points) return "";
-  return "; laid on the whole surface it is at " + pr(record.dense_errors->points->mean_pr) +
-         (is_registered(record.dense_errors) ? "" : ", still lost");
+  std::string text = "; laid on the whole surface it is at " + pr(record.dense_errors->points->mean_pr);
+  if (!is_registered(record.dense_errors)) return text + ", lost";
+  return is_registered(record.errors) ? text : text + ", which registers the pair after all";
 }
 
 Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
@@ -65,7 +67,8 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
                               " matches are right within " + fixed(counts.threshold_pr, 1) + " pr";
   const std::string keypoints = std::to_string(counts.keypoints_in_overlap) + " of " +
                                 std::to_string(counts.keypoints) + " matched source keypoints lie in the overlap";
-  const std::string limit = "a pair is registered by a mean error over the overlap of at most " + pr(kSuccessPr);
+  const std::string limit =
+      "a pair is registered by a mean error over the overlap of at most " + to_text(kSuccessPr) + " pr";
   if (cause == Cause::Found)
     return "can be registered: " + matches + ", and the refinement of all of them " + end_of(oracle) + "; " +
            keypoints + " (" + limit + ")";
@@ -86,7 +89,7 @@ std::string text_of_method(Cause cause, const MethodRecord& record) {
     case Cause::Found:
       return "the grouper found it: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::Saved:
-      return "the optimiser saved it: " + start_of(record) + ", above " + pr(kSuccessPr) + ", the refinement " +
+      return "the optimiser saved it: " + start_of(record) + ", above " + to_text(kSuccessPr) + " pr, the refinement " +
              end_of(record);
     case Cause::TooFewKeypoints:
     case Cause::TooFewTrueMatches:

@@ -31,19 +31,14 @@ MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group
   return record;
 }
 
-/// Those of the fit where there is one, over points where the meshes are known.
-std::vector<TableColumn> columns(const std::optional<PoseErrors>& fit) {
-  std::vector<TableColumn> columns = {
-      {"matches", "matches"},        {"selected", "selected"}, {"correct", "correct"}, {"true matches", "true_matches"},
-      {"precision", "precision", 4}, {"recall", "recall", 4},  {"F1", "f1", 4}};
-  const std::vector<TableColumn> of_fit = {{"fit rot err deg", "initial_rotation_error_deg", 4},
-                                           {"transl err pr", "initial_translation_error_pr", 4},
-                                           {"mean err pr", "initial_mean_error_pr", 4},
-                                           {"RMSE pr", "initial_rmse_pr", 4},
-                                           {"ADD", "initial_add_share", 4}};
-  if (fit) columns.insert(columns.end(), of_fit.begin(), fit->points ? of_fit.end() : of_fit.begin() + 2);
-  return columns;
-}
+const std::vector<TableColumn> kScoreColumns = {
+    {"matches", "matches"},        {"selected", "selected"}, {"correct", "correct"}, {"true matches", "true_matches"},
+    {"precision", "precision", 4}, {"recall", "recall", 4},  {"F1", "f1", 4}};
+const std::vector<TableColumn> kFitColumns = {{"fit: rot err deg", "initial_rotation_error_deg", 4},
+                                              {"transl err pr", "initial_translation_error_pr", 4},
+                                              {"mean err pr", "initial_mean_error_pr", 4},
+                                              {"RMSE pr", "initial_rmse_pr", 4},
+                                              {"ADD", "initial_add_share", 4}};
 
 int score(const Settings& settings) {
   check_threshold(settings.threshold_pr);
@@ -57,7 +52,7 @@ int score(const Settings& settings) {
   if (settings.json)
     put("", json);
   else
-    put("", table_text({json}, columns(record.initial_errors)));
+    put("", table_text({json}, kScoreColumns) + "\n" + table_text({json}, kFitColumns));
   return kOk;
 }
 

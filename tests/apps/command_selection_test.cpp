@@ -120,6 +120,15 @@ TEST(Refine, FindsThePoseAndJudgesIt) {
   EXPECT_EQ(json["rotation_error_deg"], rotation_error_deg(pose, problem.truth));
   EXPECT_EQ(json["translation_error_pr"], translation_error_pr(pose, problem.truth, problem.matches.resolution));
   EXPECT_LT(json["rmse_pr"], 1);
+  RigidTransform start;  // the least-squares fit
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) start.rotation(row, column) = json["initial"][row][column];
+    start.translation(row) = json["initial"][row][3];
+  }
+  EXPECT_EQ(json["initial_rotation_error_deg"], rotation_error_deg(start, problem.truth));
+  EXPECT_NE(json["initial_rotation_error_deg"], json["rotation_error_deg"]);
+  EXPECT_EQ(json["success_5pr"], true);
+  EXPECT_TRUE(json["add_share"].is_null()) << "no mesh is seen";
   ASSERT_EQ(json["target_from_source"].size(), 4U);
   EXPECT_EQ(json["target_from_source"][1][3], pose.translation(1));
   EXPECT_EQ(json["target_from_source"][2][0], pose.rotation(2, 0));
@@ -200,6 +209,34 @@ TEST(Score, CountsAndDivides) {
   expect_ok(text);
   EXPECT_THAT(text.out, StartsWith("matches  selected  correct  true matches  precision  recall"));
   EXPECT_THAT(text.out, HasSubstr("\n    100        60       60           100     1.0000  0.6000  0.7500\n"));
+}
+
+TEST(Score, JudgesTheFitToTheSelection) {
+  const Workplace place;
+  const SyntheticProblem problem = place.put_problem();
+  const auto json = place.corral("score matches.csv group.csv --truth truth.txt --json").json();
+  const RigidTransform fit = fit_rigid_transform(problem.matches, problem.inliers).value();
+  EXPECT_NEAR(json["initial_rotation_error_deg"], rotation_error_deg(fit, problem.truth), 1e-9);
+  EXPECT_NEAR(json["initial_translation_error_pr"],
+              translation_error_pr(fit, problem.truth, problem.matches.resolution), 1e-9);
+  for (const char* key : {"initial_rmse_pr", "initial_add_share", "initial_success_5pr", "initial_success_add"})
+    EXPECT_TRUE(json[key].is_null()) << key << ": no mesh is seen";
+  EXPECT_THAT(place.corral("score matches.csv group.csv --truth truth.txt").out, HasSubstr("\nfit: rot err deg  "));
+  place.put("two.csv", group_text({100, {3, 4}, {}}));
+  EXPECT_TRUE(place.corral("score matches.csv two.csv --truth truth.txt --json")
+                  .json()["initial_rotation_error_deg"]
+                  .is_null());
+}
+
+TEST(Score, TakesBothMeshesOrNone) {
+  const Workplace place;
+  place.put_problem();
+  for (const char* one : {"--source", "--target"}) {
+    const Outcome outcome =
+        place.corral("score matches.csv group.csv --truth truth.txt " + std::string(one) + " model.ply");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("expected both meshes or none"));
+  }
 }
 
 TEST(Score, AnUndefinedRatioIsNull) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <new>
@@ -142,6 +143,77 @@ TEST(PoseErrors, AreInDegreesAndPr) {
   EXPECT_NEAR(errors.points.value().rmse_pr, 2 * std::sqrt(9.0 + 1 + 9), 1e-12);  // (1,2,3) goes to (-2,1,6)
   truth.overlap.resize(0, 3);
   EXPECT_FALSE(pose_errors(estimate, truth, 0.5).points.has_value());
+}
+
+TEST(PoseErrors, AddIsTheMeanOverAllVerticesInDiameters) {
+  PairTruth truth;
+  truth.vertices.resize(3, 3);
+  truth.vertices << 0, 0, 5, 3, 0, 1, 0, 4, 0;
+  truth.diameter = 10;
+  RigidTransform estimate;  // half a turn about z: a point at distance r from the axis moves by 2 r
+  estimate.rotation << -1, 0, 0, 0, -1, 0, 0, 0, 1;
+  const PoseErrors errors = pose_errors(estimate, truth, 0.5);
+  EXPECT_NEAR(errors.add_share.value(), (0 + 6 + 8) / 3.0 / 10, 1e-14);
+  EXPECT_FALSE(errors.points.has_value());
+  EXPECT_FALSE(pose_errors(estimate, PairTruth(), 0.5).add_share.has_value());
+}
+
+TEST(PairTruth, KnowsTheOverlapAndTheExtentOfTheSource) {
+  Mesh source, target;
+  source.vertices.resize(3, 3);
+  source.vertices << 0, 0, 0, 3, 4, 0, 0, 0, 1;
+  target.vertices = Eigen::RowVector3d(0, 0, 5);
+  const RigidTransform up{Eigen::Matrix3d::Identity(), {0, 0, 4}};
+  const PairTruth truth = pair_truth(source, target, up, 0.25, 3);
+  EXPECT_EQ(truth.vertices, source.vertices);
+  EXPECT_EQ(truth.diameter, std::sqrt(26.0));
+  EXPECT_EQ(truth.threshold_pr, 3);
+  ASSERT_EQ(truth.overlap.rows(), 2) << "4 pr are 1 mesh unit";
+  EXPECT_EQ(truth.overlap.row(1), source.vertices.row(2));
+}
+
+TEST(EvaluateMethod, JudgesTheFitToo) {
+  const Problem pair = problem();
+  Indices rows = pair.made.inliers;
+  const MethodRecord all = evaluate_method("mine", selecting(rows), pair.made.matches, pair.truth, 1);
+  EXPECT_LT(all.initial_errors.value().points.value().mean_pr, 1e-6);
+  for (int row = 0; row < 100; ++row)
+    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
+  std::sort(rows.begin(), rows.end());
+  const MethodRecord mixed = evaluate_method("mine", selecting(rows), pair.made.matches, pair.truth, 1);
+  EXPECT_GT(mixed.initial_errors.value().points.value().mean_pr, 1) << "gross errors pull the fit away";
+  EXPECT_LT(mixed.errors.value().points.value().mean_pr, mixed.initial_errors->points->mean_pr);
+}
+
+TEST(IsRegistered, UpToTheLastThresholdOfTheCurve) {
+  EXPECT_EQ(kSuccessPr, success_thresholds_pr().back());
+  PoseErrors errors;
+  EXPECT_FALSE(is_registered(std::nullopt));
+  EXPECT_FALSE(is_registered(errors));
+  errors.points = PointError{99, 5};
+  EXPECT_TRUE(is_registered(errors)) << "the mean decides, inclusive";
+  errors.points = PointError{5, std::nextafter(5.0, 6.0)};
+  EXPECT_FALSE(is_registered(errors));
+  errors.points = PointError{1, std::nan("")};
+  EXPECT_FALSE(is_registered(errors));
+}
+
+TEST(MethodRecord, TheOutcomeTellsTheGrouperFromTheOptimiser) {
+  MethodRecord record;
+  EXPECT_EQ(record.outcome(), "") << "no truth";
+  record.score = GroupingScore();
+  EXPECT_EQ(record.outcome(), "lost");
+  const PoseErrors near{0, 0, PointError{1, 1}, std::nullopt}, far{0, 0, PointError{6, 6}, std::nullopt};
+  record.initial_errors = far, record.errors = near;
+  EXPECT_EQ(record.outcome(), "saved");
+  record.initial_errors = near;
+  EXPECT_EQ(record.outcome(), "found");
+  record.errors = far;
+  EXPECT_EQ(record.outcome(), "spoiled");
+  record.errors.reset();
+  EXPECT_EQ(record.outcome(), "spoiled");
+  record.failure = "no";
+  EXPECT_EQ(record.outcome(), "");
 }
 
 }  // namespace

@@ -4,62 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "kernel/number_text.h"
 #include "tests/io/scratch.h"
 
 namespace corral {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
-
-MethodRecord full_record() {
-  MethodRecord record;
-  record.method = "gc";
-  record.found.selected = {1, 2, 5};
-  record.time_ms = 0.1;
-  record.score = GroupingScore{9, 3, 2, 7, 2.0 / 3, 2.0 / 7, 0.4};
-  record.pose.status = RefineStatus::Refined;
-  record.pose.converged = true;
-  record.pose.initial = RigidTransform();
-  record.pose.target_from_source = RigidTransform();
-  record.pose.covariance = PoseCovariance::Identity();
-  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, std::nullopt};
-  return record;
-}
-
-MethodRecord failed_record() {
-  MethodRecord record = full_record();
-  record.method = "ss";
-  record.failure = "a \"b\", c\nd";
-  record.errors.reset();
-  return record;
-}
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char letter : line) {
-    if (letter == ',')
-      fields.emplace_back();
-    else
-      fields.back() += letter;
-  }
-  return fields;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(Fixed, HasSoManyDecimals) {
   EXPECT_EQ(fixed(1.25, 3), "1.250");
@@ -86,74 +40,6 @@ TEST(TextTable, MarkdownEscapesItsBars) {
   TextTable table({"a", "b"});
   table.add({"x|y", ""});
   EXPECT_EQ(table.markdown(), "| a | b |\n| --- | --- |\n| x\\|y |  |\n");
-}
-
-TEST(MethodsCsv, ReadsBackAsTheSameNumbers) {
-  const auto lines = lines_of(methods_csv({full_record()}));
-  ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0],
-            "method,selected,precision,recall,f1,time_ms,rotation_error_deg,translation_error_pr,rmse_pr,status");
-  const auto fields = fields_of(lines[1]);
-  ASSERT_EQ(fields.size(), 10U);
-  EXPECT_EQ(fields[0], "gc");
-  EXPECT_EQ(fields[1], "3");
-  const std::vector<double> numbers = {2.0 / 3, 2.0 / 7, 0.4, 0.1, 1.0 / 3, 5e-324, 1e300};
-  for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_EQ(parse_double(fields[i + 2]).value(), numbers[i]);
-  EXPECT_EQ(fields[9], "refined");
-}
-
-TEST(MethodsCsv, WhatIsUndefinedIsEmpty) {
-  MethodRecord record = full_record();
-  record.score = GroupingScore{9, 0, 0, 7, std::nullopt, 0.0, 0.0};
-  record.found.selected.clear();
-  record.errors.reset();
-  record.pose = RefinedPose();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,0,0,0.1,,,,too few rows");
-  record.score.reset();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,,,0.1,,,,too few rows");
-}
-
-TEST(MethodsCsv, AFailureIsARowWithoutNumbers) {
-  const auto lines = lines_of(methods_csv({full_record(), failed_record()}));
-  ASSERT_EQ(lines.size(), 3U);
-  EXPECT_EQ(lines[2], "ss,,,,,,,,,failed: a ;b;; c;d");
-}
-
-TEST(MethodsText, HasARowPerMethod) {
-  MethodRecord failed = failed_record();
-  failed.failure = "no table";
-  const auto lines = lines_of(methods_text({full_record(), failed}));
-  ASSERT_EQ(lines.size(), 3U);
-  EXPECT_THAT(lines[0], StartsWith("method  selected  precision"));
-  EXPECT_THAT(lines[1], StartsWith("gc             3      0.667"));
-  EXPECT_THAT(lines[1], EndsWith("refined"));
-  EXPECT_THAT(lines[2], StartsWith("ss             -          -"));
-  EXPECT_THAT(lines[2], EndsWith("failed: no table"));
-}
-
-TEST(ToJson, AMethodHasItsKeysInOrder) {
-  std::vector<std::string> keys;
-  const Json json = to_json(full_record());
-  for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, ElementsAre("method", "selected", "precision", "recall", "f1", "time_ms", "rotation_error_deg",
-                                "translation_error_pr", "rmse_pr", "status"));
-  EXPECT_EQ(json["selected"].dump(), "3");
-  EXPECT_EQ(json["rmse_pr"], 1e300);
-}
-
-TEST(ToJson, AFailureHasNothingButItsStatus) {
-  const Json json = to_json(failed_record());
-  EXPECT_EQ(json["status"], "failed: a \"b\", c\nd");
-  for (const auto& [key, value] : json.items()) EXPECT_EQ(value.is_null(), key != "method" && key != "status") << key;
-}
-
-TEST(ToJson, APoseThatIsAbsentIsNull) {
-  const Json json = to_json(RefinedPose(), std::nullopt);
-  EXPECT_EQ(json["status"], "too few rows");
-  for (const char* key :
-       {"target_from_source", "rotation_error_deg", "translation_error_pr", "rmse_pr", "mean_error_pr", "initial",
-        "initial_rms_pr", "final_rms_pr", "initial_cost", "final_cost", "condition", "covariance"})
-    EXPECT_TRUE(json.at(key).is_null()) << key;
 }
 
 TEST(ToJson, ATransformIsFourRowsOfFour) {

@@ -45,12 +45,19 @@ TEST(Run, AllMethodsAlignACopy) {
   std::vector<std::string> methods;
   for (const auto& method : json["methods"]) {
     methods.push_back(method["method"]);
-    EXPECT_THAT(keys_of(method), ElementsAre("f1", "method", "precision", "recall", "rmse_pr", "rotation_error_deg",
-                                             "selected", "status", "time_ms", "translation_error_pr"));
+    EXPECT_THAT(keys_of(method), IsSupersetOf({"f1", "method", "precision", "recall", "rmse_pr", "mean_error_pr",
+                                               "rotation_error_deg", "selected", "status", "time_ms", "add_share",
+                                               "translation_error_pr", "success_5pr", "success_from_pr", "outcome"}));
     EXPECT_TRUE(method["selected"].is_number_integer());
     if (method["method"] == "ransac") {
       EXPECT_LT(method["rotation_error_deg"], 3);
       EXPECT_EQ(method["status"], "refined");
+      EXPECT_EQ(method["outcome"], "found");
+      EXPECT_GT(method["initial_mean_error_pr"], 0);
+      EXPECT_LT(method["initial_mean_error_pr"], 5);
+      EXPECT_LE(method["mean_error_pr"], method["rmse_pr"]);
+      EXPECT_LT(method["add_share"], 0.1);
+      EXPECT_EQ(method["success_5pr"], true);
     }
   }
   EXPECT_EQ(methods, method_names());
@@ -64,7 +71,8 @@ TEST(Run, WithoutATruthScoresAndErrorsAreNull) {
   ASSERT_EQ(json["methods"].size(), 2U);
   EXPECT_EQ(json["methods"][0]["method"], "gc") << "in the order asked for";
   for (const auto& method : json["methods"])
-    for (const char* key : {"precision", "recall", "f1", "rotation_error_deg", "translation_error_pr", "rmse_pr"})
+    for (const char* key : {"precision", "recall", "f1", "rotation_error_deg", "translation_error_pr", "rmse_pr",
+                            "initial_rmse_pr", "add_share", "success_5pr", "outcome"})
       EXPECT_TRUE(method[key].is_null()) << key;
 }
 
@@ -92,6 +100,8 @@ TEST(Run, DenseRefinementHasATableOfItsOwn) {
     EXPECT_GT(dense["overlap"], 0.99);
     EXPECT_LE(dense["residual_pr"], dense["residual_before_pr"]);
     EXPECT_LT(dense["rotation_error_deg"], 0.5);
+    EXPECT_LT(dense["add_share"], 0.01);
+    EXPECT_EQ(dense["success_5pr"], true);
     EXPECT_EQ(dense["pose"].size(), 4U);
   }
   write_mesh(place / "flat.ply", testing::grid(20, 20));
@@ -125,6 +135,39 @@ TEST(Run, OracleAndFloorBoundTheMethods) {
   EXPECT_TRUE(place.corral("run model.ply copy.ply --json").json()["bounds"].is_null());
 }
 
+TEST(Run, ExplainsWhereThePairWasWonOrLost) {
+  const Workplace place;
+  place.put_pair();
+  const auto json =
+      place.corral("run model.ply copy.ply --truth truth.txt --methods gc,ransac --explain --json").json();
+  const auto explanation = json["explanation"];
+  EXPECT_EQ(explanation["success_pr"], 5);
+  EXPECT_EQ(explanation["cause"], "found");
+  EXPECT_EQ(explanation["keypoints_in_overlap"], json["matches"]) << "a copy overlaps wholly";
+  ASSERT_EQ(explanation["methods"].size(), 2U);
+  EXPECT_EQ(explanation["methods"][1]["method"], "ransac");
+  EXPECT_EQ(explanation["methods"][1]["cause"], "found");
+  const std::string text = explanation["methods"][1]["text"];
+  const Outcome printed = place.corral("run model.ply copy.ply --truth truth.txt --methods gc,ransac --explain");
+  EXPECT_THAT(printed.out, AllOf(HasSubstr("\n\npair: can be registered: "), HasSubstr("\nransac: " + text + ".\n")));
+  EXPECT_FALSE(place.corral("run model.ply copy.ply --truth truth.txt --json").json().contains("explanation"));
+  const Outcome refused = place.corral("run model.ply copy.ply --explain");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--explain: needs --truth"));
+}
+
+// A truth that holds nowhere: the pair is lost before the grouping, whatever the methods do.
+TEST(Run, ExplainsThatNothingOverlaps) {
+  const Workplace place;
+  place.put_pair();
+  place.put("far.txt", "1 0 0 1000\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const auto json = place.corral("run model.ply copy.ply --truth far.txt --methods gc --explain --json").json();
+  EXPECT_EQ(json["explanation"]["cause"], "too few keypoints");
+  EXPECT_EQ(json["explanation"]["keypoints_in_overlap"], 0);
+  EXPECT_EQ(json["explanation"]["methods"][0]["cause"], "too few keypoints");
+  EXPECT_EQ(json["methods"][0]["outcome"], "lost");
+}
+
 TEST(Run, TheFolderAgreesWithTheSingleCommands) {
   const Workplace place;
   place.put_pair();
@@ -143,13 +186,20 @@ TEST(Run, TheFolderAgreesWithTheSingleCommands) {
     EXPECT_EQ(place.text("pose.txt"), place.text(pose)) << "both absent if there is no pose";
     std::filesystem::remove(place / "pose.txt");
     auto alone = refined.json(), inside = nlohmann::json::parse(place.text("out/deep/refine_" + name + ".json"));
-    for (const char* key : {"rmse_pr", "mean_error_pr"}) {  // over the right matches there, over the overlap here
-      alone.erase(key);
-      inside.erase(key);
-    }
+    for (const char* key : {"rmse_pr", "mean_error_pr", "success_from_pr", "add_share", "success_add"})
+      for (const std::string prefix : {"", "initial_"}) {  // over the right matches there, over the overlap here
+        alone.erase(prefix + key);
+        inside.erase(prefix + key);
+      }
     EXPECT_EQ(alone, inside);
-    const auto score = place.corral("score out/deep/matches.csv " + group + " --truth truth.txt --json").json();
-    for (const char* key : {"precision", "recall", "f1", "selected"}) EXPECT_EQ(score[key], method[key]) << key;
+    const auto score = place
+                           .corral("score out/deep/matches.csv " + group +
+                                   " --truth truth.txt --source model.ply --target copy.ply --json")
+                           .json();
+    for (const char* key :
+         {"precision", "recall", "f1", "selected", "initial_rotation_error_deg", "initial_translation_error_pr",
+          "initial_rmse_pr", "initial_mean_error_pr", "initial_add_share", "initial_success_5pr"})
+      EXPECT_EQ(score[key], method[key]) << key;
     EXPECT_EQ(score["true_matches"], run["true_matches"]);
   }
 }
@@ -183,9 +233,11 @@ TEST(Run, MethodsCsvHoldsTheNumbersOfTheJson) {
   std::istringstream csv(place.text("out/methods.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_EQ(line, "method,selected,precision,recall,f1,time_ms,rotation_error_deg,translation_error_pr,rmse_pr,status");
+  EXPECT_THAT(line, StartsWith("method,selected,precision,recall,f1,time_ms,rotation_error_deg,translation_error_pr,"
+                               "rmse_pr,mean_error_pr,add_share,"));
   const std::vector<std::string> columns = {
-      "selected", "precision", "recall", "f1", "time_ms", "rotation_error_deg", "translation_error_pr", "rmse_pr"};
+      "selected", "precision",     "recall",   "f1", "time_ms", "rotation_error_deg", "translation_error_pr",
+      "rmse_pr",  "mean_error_pr", "add_share"};
   const auto methods = outcome.json()["methods"];
   for (const auto& method : methods) {
     std::getline(csv, line);
