@@ -14,9 +14,9 @@ namespace corral {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kVertices = 4000;  // of a mesh, to look where it would meet another
+constexpr Eigen::Index kVertices = 1500;  // of a mesh, to look where it would meet another
 constexpr int kSides = 8;                 // random sides of an object; it lies on the one on which it is lowest
-constexpr int kWays = 6;                  // into the heap
+constexpr int kWays = 4;                  // into the heap
 constexpr double kFromAbove = 0.3;        // share of the ways that lead down
 
 /// Some vertices of a surface, in the world.

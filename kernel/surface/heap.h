@@ -12,7 +12,7 @@ namespace corral {
 bool touch(const PosedSurface& a, const PosedSurface& b);
 
 /// How far a surface may move along a direction (unit vector, world) before one of its vertices meets a surface that stands
-/// there, or a vertex of those meets it; infinite if none ever does. Of each mesh at most some 4000 vertices are looked at,
+/// there, or a vertex of those meets it; infinite if none ever does. Of each mesh at most some 1500 vertices are looked at,
 /// and edges that meet edges are not seen: whoever needs to be sure asks `touch`.
 double free_path(const PosedSurface& moving, const PosedSurfaces& standing, const Eigen::Vector3d& direction);
 

@@ -7,6 +7,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -40,6 +41,18 @@ Faces faces_of(const Mesh& mesh, Indices& rows) {
   return faces;
 }
 
+/// Where a ray meets a triangle that it is known to meet: never beyond the corners, however thin the triangle or flat the
+/// ray. In a triangle that is seen edge-on it is the nearest corner.
+RayHit meet(const Mesh& mesh, int face, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d a = corner(mesh, face, 0), b = corner(mesh, face, 1), c = corner(mesh, face, 2);
+  const Eigen::Vector3d along(direction.dot(a - origin), direction.dot(b - origin), direction.dot(c - origin));
+  const double nearest = std::max(along.minCoeff(), 0.0), farthest = along.maxCoeff();
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const double slope = normal.dot(direction), distance = normal.dot(a - origin) / slope;
+  // Not std::clamp: without a slope the distance may be no number.
+  return {face, distance > nearest ? std::min(distance, farthest) : nearest, std::abs(slope) / normal.norm()};
+}
+
 }  // namespace
 
 struct SurfaceTree::Tree {
@@ -71,11 +84,7 @@ std::optional<RayHit> SurfaceTree::first_hit(const Eigen::Vector3d& origin, cons
   const Kernel::Ray_3 ray(to_cgal(origin), Kernel::Vector_3(direction.x(), direction.y(), direction.z()));
   const auto found = tree_->boxes.first_intersected_primitive(ray);
   if (!found) return std::nullopt;
-  const int face = tree_->row(*found);
-  const Eigen::Vector3d a = corner(tree_->mesh, face, 0);
-  const Eigen::Vector3d normal = (corner(tree_->mesh, face, 1) - a).cross(corner(tree_->mesh, face, 2) - a);
-  const double slope = normal.dot(direction);
-  return RayHit{face, normal.dot(a - origin) / slope, std::abs(slope) / normal.norm()};
+  return meet(tree_->mesh, tree_->row(*found), origin, direction);
 }
 
 bool SurfaceTree::meets(const Mesh& other) const {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kernel/random.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tables.h"
@@ -49,6 +51,13 @@ TEST(OverlapShare, IsTheSmallerCountOverTheSmallerSurface) {
   EXPECT_DOUBLE_EQ(overlap_share(source, target, shift, 1), 2.0 / 3);
   EXPECT_DOUBLE_EQ(overlap_share(target, source, shift.inverse(), 1), 2.0 / 3);
   EXPECT_EQ(overlap_share(source, target, shift.inverse(), 1), 0);
+TEST(OverlapShare, IsTheSmallerCountOverTheSmallerNumber) {
+  const Points source = points_of({{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {50, 0, 0}});
+  const Points target = points_of({{10, 0, 0}, {80, 0, 0}, {90, 0, 0}});
+  // Three source points have the one target point within 0.2; it has them.
+  EXPECT_NEAR(overlap_share(source, target, shift, 0.2 + 1e-9), 1.0 / 3, 1e-15);
+  EXPECT_NEAR(overlap_share(target, source, shift.inverse(), 0.2 + 1e-9), 1.0 / 3, 1e-15);
+  EXPECT_EQ(overlap_share(source, target, shift.inverse(), 0.2), 0);
   EXPECT_EQ(overlap_share(source, Points(0, 3), shift, 1), 0);
   EXPECT_EQ(overlap_share(source, source, {}, 0), 1);
 }
@@ -67,6 +76,10 @@ TEST(SharedArea, CountsTrianglesWhoseThreeCornersAreNear) {
     if (other(row, 0) < 2.5) left.push_back(row);
   EXPECT_DOUBLE_EQ(shared_area(surface, other(left, Eigen::all), up, 0.5).value(), 0.5);
   EXPECT_FALSE(shared_area({surface.vertices, Triangles(0, 3)}, other, up, 0.5)) << "a cloud has no area";
+TEST(SurfaceArea, OfAGridAndABall) {
+  EXPECT_NEAR(surface_area(testing::grid(4, 3, 2)), 24, 1e-12);
+  EXPECT_NEAR(surface_area(testing::icosphere(5, 2)), 16 * std::acos(-1.0), 0.05);
+  EXPECT_EQ(surface_area({points_of({{0, 0, 0}}), Triangles(0, 3)}), 0);
 }
 
 }  // namespace
