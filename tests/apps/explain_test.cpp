@@ -118,6 +118,15 @@ TEST(ExplainMethod, TheGrouperMissedTheRightMatches) {
                                            Not(HasSubstr("precision"))));
 }
 
+TEST(ExplainMethod, FewerThanThreeRightMatchesAreTheGroupersFault) {
+  MethodRecord two = record_of(-1, -1, 2, 2);
+  two.pose.status = RefineStatus::TooFewRows;
+  EXPECT_EQ(explain(two).cause, Cause::GrouperMissed) << "however precise";
+  MethodRecord line = record_of(-1, -1, 3, 2);
+  line.pose.status = RefineStatus::DegenerateGeometry;
+  EXPECT_EQ(explain(line).cause, Cause::GrouperMissed);
+}
+
 TEST(ExplainMethod, ASelectionThatFixesNoPose) {
   MethodRecord record = record_of(-1, -1, 5, 4);
   record.pose.status = RefineStatus::DegenerateGeometry;
