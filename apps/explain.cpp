@@ -82,6 +82,13 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
          keypoints + " (" + limit + ")";
 }
 
+/// What a grouper did to a pair that it had to register.
+std::string fault_of(const GroupingScore& score) {
+  if (score.correct < kLeastRows) return "the grouper missed them";
+  return *score.precision < kLeastPrecision ? "the grouper let too many wrong ones in"
+                                            : "the grouper kept right ones that do not fix the pose";
+}
+
 std::string text_of_method(Cause cause, const MethodRecord& record) {
   switch (cause) {
     case Cause::NoAnswer:
@@ -96,7 +103,7 @@ std::string text_of_method(Cause cause, const MethodRecord& record) {
       return std::string("lost with the pair (") + to_text(cause) + "): " + start_of(record) + ", the refinement " +
              end_of(record);
     case Cause::GrouperMissed:
-      return "the grouper missed it: " + start_of(record) + ", the refinement " + end_of(record);
+      return fault_of(*record.score) + ": " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::DegenerateSelection:
       return "the selection fixes no pose: " + start_of(record) + ", on one line or in one place";
     case Cause::Diverged:

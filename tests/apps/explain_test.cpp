@@ -108,14 +108,28 @@ TEST(ExplainMethod, LostWithThePair) {
 TEST(ExplainMethod, TheGrouperMissedTheRightMatches) {
   const Explanation missed = explain(record_of(90, 80, 30, 2));
   EXPECT_EQ(missed.cause, Cause::GrouperMissed);
-  EXPECT_THAT(missed.text, HasSubstr("the grouper missed it: kept 2 of the 40 right matches among 30 rows"));
-  EXPECT_EQ(explain(record_of(90, 80, 30, 14)).cause, Cause::GrouperMissed) << "half of it wrong, at rest";
+  EXPECT_THAT(missed.text, HasSubstr("the grouper missed them: kept 2 of the 40 right matches among 30 rows"));
+  const Explanation drowned = explain(record_of(90, 80, 30, 14));
+  EXPECT_EQ(drowned.cause, Cause::GrouperMissed) << "more than half of it wrong, at rest";
+  EXPECT_THAT(drowned.text, HasSubstr("the grouper let too many wrong ones in: kept 14 of"));
+  const Explanation astray = explain(record_of(90, 80, 30, 15));
+  EXPECT_EQ(astray.cause, Cause::GrouperMissed);
+  EXPECT_THAT(astray.text, HasSubstr("the grouper kept right ones that do not fix the pose: kept 15 of"));
   EXPECT_EQ(explain(record_of(90, -1, 30, 14)).cause, Cause::GrouperMissed) << "no optimiser can do with that";
   MethodRecord nothing = record_of(-1, -1, 0, 0);
   nothing.pose.status = RefineStatus::TooFewRows;
   EXPECT_EQ(explain(nothing).cause, Cause::GrouperMissed);
   EXPECT_THAT(explain(nothing).text, AllOf(HasSubstr("among 0 rows, the refinement gives no pose (too few rows)"),
                                            Not(HasSubstr("precision"))));
+}
+
+TEST(ExplainMethod, FewerThanThreeRightMatchesAreTheGroupersFault) {
+  MethodRecord two = record_of(-1, -1, 2, 2);
+  two.pose.status = RefineStatus::TooFewRows;
+  EXPECT_EQ(explain(two).cause, Cause::GrouperMissed) << "however precise";
+  MethodRecord line = record_of(-1, -1, 3, 2);
+  line.pose.status = RefineStatus::DegenerateGeometry;
+  EXPECT_EQ(explain(line).cause, Cause::GrouperMissed);
 }
 
 TEST(ExplainMethod, ASelectionThatFixesNoPose) {

@@ -168,6 +168,7 @@ TEST(AddErrors, NoPoseHasFailedIfItWasJudged) {
 
 TEST(AddErrors, WithoutPointsSuccessIsUnknown) {
   EXPECT_EQ(errors_of(PoseErrors{1, 2, std::nullopt, std::nullopt}, false), "1.0 2.0 null null null null null null");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1}, std::nullopt}, true), "1.0 2.0 3.0 1.0 null true 1.0 null");
 }
 
 TEST(Dense, HasTheSameScores) {
