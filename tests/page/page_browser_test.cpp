@@ -270,6 +270,15 @@ TEST_F(PageInBrowser, APointLeadsToItsPairInThreeDimensions) {
       EXPECT_EQ(drawn.value("missed", 0), *record.true_matches - *record.correct);
     }
   }
+  // Where the threshold is what is swept, that of the level decides.
+  js("data.experiments[0].attribute = 'threshold_pr'; pairView.show(records.find(r => r.pair === '" + pair +
+     "' && r.method === 'oracle'))");
+  EXPECT_EQ(js("pairView.halves()[0].groups.right.length"),
+            js("[...pairView.state.scene.distance].filter((d, i) => d <= 0.4 && "
+               "pairView.state.scene.kept.oracle[i]).length"));
+  EXPECT_LT(js("pairView.halves()[0].groups.right.length"),
+            js("pairView.state.scene.kept.oracle.filter(Boolean).length"));
+  js("data.experiments[0].attribute = 'noise_pr'");
   choose("left-method", "ss");
   const Json all = pixels();
   for (const char* kind : {"source", "target"}) EXPECT_GT(all[kind], 10000) << kind;
