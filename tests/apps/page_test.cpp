@@ -77,6 +77,17 @@ TEST_F(Page, HoldsTheMeansOfTheSummaryAndGapsWhereThereAreNone) {
   EXPECT_THAT(io_error_of([&] { report_page(runs()); }), HasSubstr("precision 'much'"));
 }
 
+TEST_F(Page, ARunOfTimesHasATableOfItsOwn) {
+  remove_file(folder_ / "run/summary.csv");
+  put_text(folder_ / "run/time.csv",
+           "experiment,dataset,level,method,runs,median_ms\nnoise,spheres,0.2,gc,10,0.25\nother,spheres,0.1,gc,10,1\n");
+  const Json means = data()["experiments"][0]["means"];
+  ASSERT_EQ(means.size(), 1u);
+  EXPECT_EQ(means[0], Json({{"level", "0.2"}, {"method", "gc"}, {"runs", 10}, {"median_ms", 0.25}}));
+  put_text(folder_ / "run/time.csv", "experiment,dataset,level,method,runs\n");
+  EXPECT_THAT(io_error_of([&] { report_page(runs()); }), HasSubstr("median_ms is missing"));
+}
+
 TEST_F(Page, HoldsEveryRecord) {
   const Json page = data();
   const std::vector<StudyRecord> records = runs()[0].records;

@@ -43,7 +43,7 @@ struct Desk {
         const Mesh sphere = bumpy_sphere(4, static_cast<std::uint64_t>(seed));
         const RigidTransform truth = random_motion(sphere, static_cast<std::uint64_t>(seed));
         const Mesh noisy = add_gaussian_noise(sphere, noise * point_resolution(sphere.vertices), 3);
-        cases.push_back({level, "ball" + std::to_string(seed) + (noise < 0.2 ? "-low" : "-high"), sphere,
+        cases.push_back({level, "Ball" + std::to_string(seed) + (noise < 0.2 ? "-low" : "-high"), sphere,
                          move_mesh(noisy, truth), truth});
       }
     cases.push_back({"0.2", "broken", {}, {}, {}});  // the level in the middle is a gap
@@ -225,8 +225,8 @@ TEST_F(PageInBrowser, TheTableSortsFiltersAndOpensPairs) {
   EXPECT_EQ(js("document.querySelectorAll('#records-table th')[" + std::to_string(f1) + "].ariaSort"), "descending");
 
   click("#filter-pair");
-  browser_->type("BALL2-h");
-  EXPECT_EQ(column(2), Json({"ball2-high", "ball2-high", "ball2-high", "ball2-high", "ball2-high"}));
+  browser_->type("bALL2-h");
+  EXPECT_EQ(column(2), Json({"Ball2-high", "Ball2-high", "Ball2-high", "Ball2-high", "Ball2-high"}));
   choose("filter-method", "gc");
   EXPECT_EQ(column(2).size(), 1u);
   js("document.querySelector('#records-table td button').focus()");
@@ -270,6 +270,15 @@ TEST_F(PageInBrowser, APointLeadsToItsPairInThreeDimensions) {
       EXPECT_EQ(drawn.value("missed", 0), *record.true_matches - *record.correct);
     }
   }
+  // Where the threshold is what is swept, that of the level decides.
+  js("data.experiments[0].attribute = 'threshold_pr'; pairView.show(records.find(r => r.pair === '" + pair +
+     "' && r.method === 'oracle'))");
+  EXPECT_EQ(js("pairView.halves()[0].groups.right.length"),
+            js("[...pairView.state.scene.distance].filter((d, i) => d <= 0.4 && "
+               "pairView.state.scene.kept.oracle[i]).length"));
+  EXPECT_LT(js("pairView.halves()[0].groups.right.length"),
+            js("pairView.state.scene.kept.oracle.filter(Boolean).length"));
+  js("data.experiments[0].attribute = 'noise_pr'");
   choose("left-method", "ss");
   const Json all = pixels();
   for (const char* kind : {"source", "target"}) EXPECT_GT(all[kind], 10000) << kind;

@@ -60,6 +60,9 @@ const pairView = (() => {
     return scene;
   }
 
+  /// Within how many pr a match was right for the records of a level.
+  const thresholdOf = (experiment, level) => experiment.attribute === 'threshold_pr' ? Number(level) : experiment.threshold_pr;
+
   /// What is right is unknown without a truth; then all that was kept counts as "kept".
   function split(scene, method, threshold) {
     const groups = {right: [], wrong: [], missed: [], kept: []};
@@ -131,7 +134,7 @@ const pairView = (() => {
   }
 
   function captionOf(scene, method, groups) {
-    const record = records.find(r => keyOf(r) === keyOf(scene) && r.method === method && r.place === state.experiment && (state.level === null || r.level === state.level));
+    const record = records.find(r => keyOf(r) === keyOf(scene) && r.method === method && r.place === state.experiment && r.level === state.level);
     const parts = [element('strong', {}, labelOf(method)), ' '];
     const say = (name, text) => parts.push(element('span', {class: name}, `${groups[name].length} ${text}`), ' · ');
     if (scene.distance) { say('right', 'right'); say('wrong', 'wrong'); say('missed', 'missed'); }
@@ -144,7 +147,7 @@ const pairView = (() => {
   }
 
   function halfOf(scene, method, aspect) {
-    const groups = split(scene, method, state.experiment ? state.experiment.threshold_pr : 4);
+    const groups = split(scene, method, thresholdOf(state.experiment, state.level));
     const motions = arrange(scene, method, aspect), three = new THREE.Scene();
     const clouds = [];
     const put = (mesh, motion, color) => { three.add(surface(mesh, motion, color)); clouds.push(moved(mesh.points, motion)); };

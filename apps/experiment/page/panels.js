@@ -157,7 +157,7 @@ const panels = (() => {
     const pairs = perLevel.map(m => m.pairs), low = Math.min(...pairs), high = Math.max(...pairs);
     const failed = records.filter(r => r.place === experiment && r.status.startsWith('failed')).length;
     const own = experiment.means.filter(m => experiment.methods.includes(m.method));
-    return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${experiment.threshold_pr} pr; ` +
+    return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +
       `${sum(perLevel, 'excluded')} excluded (fewer than ${counted(experiment.least_true_matches, 'right match', 'right matches')}); ` +
       `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
   }
