@@ -32,7 +32,8 @@ std::string resolution_rule(const TomlTable& table) {
   if (rule == "mean" || rule == "source" || rule == "target") return rule;
   const std::optional<double> length = parse_double(rule);
   if (!length || !(*length > 0) || !std::isfinite(*length))
-    table.fail("resolution", "found " + corral::quoted(rule) + ", expected mean, source, target or a length above zero");
+    table.fail("resolution",
+               "found " + corral::quoted(rule) + ", expected mean, source, target or a length above zero");
   return rule;
 }
 
@@ -60,8 +61,10 @@ void read_pairs(const std::string& path, Dataset& dataset) {
     const std::string place = "pair " + std::to_string(row + 1);
     DatasetPair pair{cell(0), cell(1), cell(2), cell(3), {}};
     if (!is_name(pair.name))
-      throw IoError(path, place, "the name " + corral::quoted(pair.name) + ": expected letters, digits and . _ + - only");
-    if (!names.insert(pair.name).second) throw IoError(path, place, "the name " + corral::quoted(pair.name) + " stands twice");
+      throw IoError(path, place,
+                    "the name " + corral::quoted(pair.name) + ": expected letters, digits and . _ + - only");
+    if (!names.insert(pair.name).second)
+      throw IoError(path, place, "the name " + corral::quoted(pair.name) + " stands twice");
     if (pair.source.empty() || pair.target.empty()) throw IoError(path, place, "a pair without source or target");
     for (const std::string& attribute : dataset.attributes)
       pair.attributes.push_back(cells[static_cast<std::size_t>(table.column(attribute))]);

@@ -32,6 +32,9 @@ void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);
+void add_dataset(CLI::App& app, Action& action);
+void add_dataset_make(CLI::App& dataset, Action& action);
+void add_dataset_import(CLI::App& dataset, Action& action);
 
 /// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
 Mesh read_surface(const std::string& path);
@@ -43,6 +46,9 @@ void check_threshold(double threshold_pr);        ///< throws UsageError
 
 /// The text of an option as a point or direction "x,y,z". Throws UsageError.
 Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
+
+/// --threads, checked where workers() are made of it.
+void add_threads(CLI::App& command, int& threads);
 
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);

@@ -1,12 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/perturbation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "kernel/error.h"
 #include "kernel/random.h"
+#include "kernel/surface/topology.h"
 
 namespace corral {
+namespace {
+
+/// So many of the rows 0 .. rows - 1, ascending: selection sampling, one draw for each row.
+Indices random_rows(int rows, int count, std::uint64_t seed) {
+  RandomStream random(seed);
+  Indices kept;
+  for (int row = 0; row < rows; ++row) {
+    const auto left = static_cast<std::uint64_t>(rows - row);
+    if (random.below(left) < static_cast<std::uint64_t>(count) - kept.size()) kept.push_back(row);
+  }
+  return kept;
+}
+
+/// For each vertex the place in `kept` of the kept vertex that is the fewest edges away; -1 if none can be reached.
+Indices nearest_kept(const Mesh& mesh, const Indices& kept) {
+  const std::vector<Indices> rings = vertex_rings(mesh);
+  Indices owners(rings.size(), -1), front = kept;
+  for (std::size_t i = 0; i < kept.size(); ++i) owners[static_cast<std::size_t>(kept[i])] = static_cast<int>(i);
+  while (!front.empty()) {
+    Indices next;  // a front is in the order of its owners, so that the first to arrive is the lowest
+    for (const int vertex : front)
+      for (const int neighbor : rings[static_cast<std::size_t>(vertex)]) {
+        int& owner = owners[static_cast<std::size_t>(neighbor)];
+        if (owner >= 0) continue;
+        owner = owners[static_cast<std::size_t>(vertex)];
+        next.push_back(neighbor);
+      }
+    front = std::move(next);
+  }
+  return owners;
+}
+
+}  // namespace
 
 Mesh add_gaussian_noise(const Mesh& mesh, double deviation, std::uint64_t seed) {
   if (!(deviation >= 0) || !std::isfinite(deviation))
@@ -16,6 +53,35 @@ Mesh add_gaussian_noise(const Mesh& mesh, double deviation, std::uint64_t seed) 
   for (Eigen::Index row = 0; row < noisy.vertices.rows(); ++row)
     for (int axis = 0; axis < 3; ++axis) noisy.vertices(row, axis) += deviation * random.normal();
   return noisy;
+}
+
+double noise_deviation(const Mesh& clean, const Mesh& noisy) {
+  if (clean.vertices.rows() != noisy.vertices.rows() || clean.vertices.rows() == 0)
+    throw InvalidInput("noise_deviation", "number of vertices", std::to_string(noisy.vertices.rows()),
+                       "those of the clean mesh, " + std::to_string(clean.vertices.rows()) + ", and at least one");
+  return std::sqrt((noisy.vertices - clean.vertices).squaredNorm() / static_cast<double>(clean.vertices.size()));
+}
+
+Mesh thin_mesh(const Mesh& mesh, double share, std::uint64_t seed) {
+  if (!(share >= 0 && share <= 1)) throw InvalidInput("thin_mesh", "share", share, "0 .. 1");
+  const auto rows = static_cast<int>(mesh.vertices.rows());
+  const Indices kept = random_rows(rows, static_cast<int>(std::lround(share * rows)), seed);
+  const Indices owners = nearest_kept(mesh, kept);
+  std::set<std::array<int, 3>> seen;  // several triangles may end at the same three vertices
+  Indices corners;
+  for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row) {
+    std::array<int, 3> face;
+    for (int i = 0; i < 3; ++i)
+      face[static_cast<std::size_t>(i)] = owners[static_cast<std::size_t>(mesh.triangles(row, i))];
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    const auto [a, b, c] = face;
+    if (a >= 0 && a != b && b != c && c != a && seen.insert(face).second) corners.insert(corners.end(), {a, b, c});
+  }
+  Mesh thin{mesh.vertices(kept, Eigen::all), Triangles(static_cast<Eigen::Index>(corners.size() / 3), 3)};
+  for (Eigen::Index row = 0; row < thin.triangles.rows(); ++row)
+    thin.triangles.row(row) << corners[static_cast<std::size_t>(3 * row)],
+        corners[static_cast<std::size_t>(3 * row + 1)], corners[static_cast<std::size_t>(3 * row + 2)];
+  return thin;
 }
 
 Mesh move_mesh(const Mesh& mesh, const RigidTransform& target_from_source) {

@@ -47,6 +47,22 @@ double overlap_share(const Points& source, const Points& target, const RigidTran
   return static_cast<double>(shared) / static_cast<double>(least);
 }
 
+std::optional<double> shared_area(const Mesh& surface, const Points& other, const RigidTransform& other_from_surface,
+                                  double threshold) {
+  const Indices nearest = nearest_within(surface.vertices, other, other_from_surface, threshold);
+  const auto is_near = [&](int vertex) { return nearest[static_cast<std::size_t>(vertex)] >= 0; };
+  double shared = 0, whole = 0;
+  for (Eigen::Index face = 0; face < surface.triangles.rows(); ++face) {
+    const double area = face_area(surface, face);
+    whole += area;
+    if (is_near(surface.triangles(face, 0)) && is_near(surface.triangles(face, 1)) &&
+        is_near(surface.triangles(face, 2)))
+      shared += area;
+  }
+  if (!(whole > 0)) return std::nullopt;
+  return shared / whole;
+}
+
 double surface_area(const Mesh& mesh) {
   double area = 0;
   for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face) area += face_area(mesh, face);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernel/rigid_transform.h"
@@ -23,6 +24,15 @@ Points overlap_points(const Points& source, const PointIndex& target_index, cons
 /// Source    [yang2017evaluation] for the ratio; it leaves the threshold and the direction open.
 double overlap_share(const Points& source, const Points& target, const RigidTransform& target_from_source,
                      double threshold);
+
+/// The part of a surface's area that another shares, 0 .. 1: triangles whose three corners have a point of the other within
+/// `threshold` (mesh units). Absent for a surface without area. Of a model and the scene that it stands in,
+///
+///   occlusion = 1 - shared_area(model, scene)     clutter = 1 - shared_area(scene, model)
+///
+/// Source    [mian2006recognition] for both ratios.
+std::optional<double> shared_area(const Mesh& surface, const Points& other, const RigidTransform& other_from_surface,
+                                  double threshold);
 
 /// Area of all triangles in squared mesh units.
 double surface_area(const Mesh& mesh);

@@ -60,6 +60,17 @@ TEST(DatasetFile, ReadsBackWhatItWrote) {
 
 TEST(DatasetFile, TenLinesAreEnough) { EXPECT_EQ(complaint_of("name = \"mine\"\n", kPairs), ""); }
 
+TEST(DatasetFile, TellsAHalfMadeSetFromNone) {
+  const ScratchFolder folder;
+  const auto complaint = [&] { return testing::io_error_of([&] { read_dataset(folder.path()); }); };
+  EXPECT_THAT(complaint(), HasSubstr("dataset.toml: does not exist"));
+  put_text(folder / kRecipeName, "made so\n");
+  EXPECT_THAT(complaint(), HasSubstr(folder.path() + ": is half made"));
+  put_text(folder / "dataset.toml", "name = \"x\"\n");
+  put_text(folder / "pairs.csv", kPairs);
+  EXPECT_EQ(complaint(), "");
+}
+
 TEST(DatasetFile, NamesWhatIsWrong) {
   EXPECT_THAT(complaint_of("", kPairs), HasSubstr("name"));
   EXPECT_THAT(complaint_of("name = \"a b\"\n", kPairs), HasSubstr("letters"));

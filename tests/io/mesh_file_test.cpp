@@ -36,6 +36,23 @@ std::string refusal(Parser parser, const std::string& content) {
 std::string off_refusal(const std::string& content) { return refusal(parse_off, content); }
 std::string obj_refusal(const std::string& content) { return refusal(parse_obj, content); }
 
+TEST(MeshFile, BinaryPlyReadsBackWhatItWrote) {
+  const Mesh mesh = testing::bumpy_sphere(3, 1);
+  const std::string text = binary_ply_text(mesh);
+  const Mesh read = parse_ply("x.ply", text);
+  EXPECT_EQ(read.vertices, mesh.vertices);
+  EXPECT_EQ(read.triangles, mesh.triangles);
+  EXPECT_EQ(text.size(), text.find("end_header\n") + 11 + 24 * 642 + 13 * 1280);
+  const Mesh cloud = parse_ply("x.ply", binary_ply_text({mesh.vertices, Triangles(0, 3)}));
+  EXPECT_EQ(cloud.vertices, mesh.vertices);
+  EXPECT_EQ(cloud.triangles.rows(), 0);
+}
+
+TEST(MeshFile, KnowsTheEndingsThatItReads) {
+  for (const char* name : {"a.ply", "x/a.OFF", "a.obj", "a.stl", "a.xyz", "a.b.pcd"}) EXPECT_TRUE(is_mesh_name(name));
+  for (const char* name : {"ply", "a.txt", "a.ply.gz", "a.xf", ""}) EXPECT_FALSE(is_mesh_name(name));
+}
+
 TEST(MeshFile, ReadsBackWhatItWrote) {
   const ScratchFolder folder;
   Mesh mesh = testing::bumpy_sphere(2, 3);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "kernel/error.h"
 #include "tests/support/meshes.h"
@@ -96,6 +97,70 @@ TEST(RandomMotion, SeedDecides) {
   EXPECT_EQ(random_motion(mesh, 1).rotation, random_motion(mesh, 1).rotation);
   EXPECT_EQ(random_motion(mesh, 1).translation, random_motion(mesh, 1).translation);
   EXPECT_NE(random_motion(mesh, 1).rotation, random_motion(mesh, 2).rotation);
+}
+
+TEST(NoiseDeviation, MeasuresBackWhatWasAdded) {
+  const Mesh mesh = testing::icosphere(5);
+  EXPECT_NEAR(noise_deviation(mesh, add_gaussian_noise(mesh, 0.02, 3)), 0.02, 0.02 * 0.02);
+  EXPECT_EQ(noise_deviation(mesh, mesh), 0);
+  EXPECT_THROW(noise_deviation(mesh, testing::icosphere(4)), InvalidInput);
+  EXPECT_THROW(noise_deviation({Points(0, 3), {}}, {Points(0, 3), {}}), InvalidInput);
+}
+
+TEST(ThinMesh, KeepsThatManyVerticesInTheirOrder) {
+  const Mesh mesh = testing::bumpy_sphere(3, 1);  // 642 vertices
+  for (const double share : {0.0, 0.1, 0.55, 0.9, 1.0}) {
+    const Mesh thin = thin_mesh(mesh, share, 4);
+    ASSERT_EQ(thin.vertices.rows(), std::lround(share * 642));
+    Eigen::Index from = 0;
+    for (Eigen::Index row = 0; row < thin.vertices.rows(); ++row, ++from) {
+      while (from < 642 && mesh.vertices.row(from) != thin.vertices.row(row)) ++from;
+      ASSERT_LT(from, 642) << "not a vertex of the mesh, or not in its order";
+    }
+    thin.validate("thin");
+  }
+  EXPECT_EQ(thin_mesh(mesh, 1, 4).triangles.rows(), mesh.triangles.rows());
+  EXPECT_THROW(thin_mesh(mesh, 1.1, 4), InvalidInput);
+  EXPECT_THROW(thin_mesh(mesh, -0.1, 4), InvalidInput);
+  EXPECT_THROW(thin_mesh(mesh, std::nan(""), 4), InvalidInput);
+}
+
+TEST(ThinMesh, EveryVertexIsAsLikely) {
+  Mesh mesh = testing::grid(10, 10);
+  std::vector<int> kept(100);
+  constexpr int kDraws = 2000;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const Points thin = thin_mesh({mesh.vertices, Triangles(0, 3)}, 0.3, seed).vertices;
+    for (Eigen::Index row = 0; row < thin.rows(); ++row)
+      ++kept[static_cast<std::size_t>(10 * thin(row, 1) + thin(row, 0))];
+  }
+  const double spread = std::sqrt(kDraws * 0.3 * 0.7);
+  for (const int count : kept) EXPECT_NEAR(count, 0.3 * kDraws, 5 * spread);
+  EXPECT_NE(thin_mesh(mesh, 0.5, 1).vertices, thin_mesh(mesh, 0.5, 2).vertices);
+  EXPECT_EQ(thin_mesh(mesh, 0.5, 1).vertices, thin_mesh(mesh, 0.5, 1).vertices);
+}
+
+TEST(ThinMesh, WhatIsLeftOfTheTrianglesTellsTheOutside) {
+  const Mesh mesh = testing::bumpy_sphere(4, 2);  // 2562 vertices around the origin
+  for (const double share : {0.9, 0.5, 0.1}) {
+    const Mesh thin = thin_mesh(mesh, share, 5);
+    const Points normals = area_weighted_normals(thin);
+    int outwards = 0;
+    for (Eigen::Index row = 0; row < normals.rows(); ++row)
+      outwards += normals.row(row).dot(thin.vertices.row(row)) > 0;
+    EXPECT_GT(outwards, 0.99 * static_cast<double>(normals.rows())) << share;
+    // A closed surface has twice as many triangles as vertices, less four.
+    EXPECT_NEAR(static_cast<double>(thin.triangles.rows()), 2.0 * static_cast<double>(thin.vertices.rows()),
+                0.05 * static_cast<double>(thin.vertices.rows()));
+  }
+}
+
+TEST(ThinMesh, TrianglesFollowTheNearestKeptVertex) {
+  // Of a strip of two rows, keeping all gives it back; a vertex without triangles keeps none.
+  Mesh mesh = testing::grid(3, 2);
+  EXPECT_EQ(thin_mesh(mesh, 1, 1).triangles.rows(), 4);
+  mesh.triangles.resize(0, 3);
+  EXPECT_EQ(thin_mesh(mesh, 1, 1).triangles.rows(), 0);
 }
 
 }  // namespace

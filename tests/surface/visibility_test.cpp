@@ -43,14 +43,14 @@ TEST(OverlapPoints, AMovedCopyOverlapsWholly) {
   EXPECT_EQ(overlap_points(source, PointIndex(motion.apply(source)), motion.inverse(), 1e-9).rows(), 0);
 }
 
-TEST(OverlapShare, IsTheSmallerCountOverTheSmallerNumber) {
+TEST(OverlapShare, IsTheSmallerCountOverTheSmallerSurface) {
   const RigidTransform shift{Eigen::Matrix3d::Identity(), {10, 0, 0}};
-  const Points source = points_of({{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {50, 0, 0}});
-  const Points target = points_of({{10, 0, 0}, {80, 0, 0}, {90, 0, 0}});
-  // Three source points have the one target point within 0.2; it has them.
-  EXPECT_NEAR(overlap_share(source, target, shift, 0.2 + 1e-9), 1.0 / 3, 1e-15);
-  EXPECT_NEAR(overlap_share(target, source, shift.inverse(), 0.2 + 1e-9), 1.0 / 3, 1e-15);
-  EXPECT_EQ(overlap_share(source, target, shift.inverse(), 0.2), 0);
+  const Points target = points_of({{10, 0, 0}, {11, 0, 0}, {50, 0, 0}});
+  // Four source points lie near the first two of the target, which are two of its three.
+  const Points source = points_of({{0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {0, 90, 0}});
+  EXPECT_DOUBLE_EQ(overlap_share(source, target, shift, 1), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(overlap_share(target, source, shift.inverse(), 1), 2.0 / 3);
+  EXPECT_EQ(overlap_share(source, target, shift.inverse(), 1), 0);
   EXPECT_EQ(overlap_share(source, Points(0, 3), shift, 1), 0);
   EXPECT_EQ(overlap_share(source, source, {}, 0), 1);
 }
@@ -59,6 +59,22 @@ TEST(SurfaceArea, OfAGridAndABall) {
   EXPECT_NEAR(surface_area(testing::grid(4, 3, 2)), 24, 1e-12);
   EXPECT_NEAR(surface_area(testing::icosphere(5, 2)), 16 * std::acos(-1.0), 0.05);
   EXPECT_EQ(surface_area({points_of({{0, 0, 0}}), Triangles(0, 3)}), 0);
+}
+
+TEST(SharedArea, CountsTrianglesWhoseThreeCornersAreNear) {
+  const Mesh surface = testing::grid(5, 3);  // 4 x 2 squares
+  EXPECT_DOUBLE_EQ(surface_area(surface), 8);
+  const RigidTransform up{Eigen::Matrix3d::Identity(), {0, 0, 7}};
+  Points other = surface.vertices.rowwise() + Eigen::RowVector3d(0, 0, 7.5);
+  EXPECT_DOUBLE_EQ(shared_area(surface, other, up, 0.5).value(), 1) << "inclusive";
+  EXPECT_DOUBLE_EQ(shared_area(surface, other, up, 0.4).value(), 0);
+  EXPECT_DOUBLE_EQ(shared_area(surface, other, up.inverse(), 0.5).value(), 0);
+  // Without the points above x = 3 and x = 4, the last two columns of squares lack corners.
+  Indices left;
+  for (int row = 0; row < other.rows(); ++row)
+    if (other(row, 0) < 2.5) left.push_back(row);
+  EXPECT_DOUBLE_EQ(shared_area(surface, other(left, Eigen::all), up, 0.5).value(), 0.5);
+  EXPECT_FALSE(shared_area({surface.vertices, Triangles(0, 3)}, other, up, 0.5)) << "a cloud has no area";
 }
 
 }  // namespace

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// corral dataset make: data sets from any meshes. A maker is a function make_x(options, progress) and a function here.
+#include "apps/commands/commands.h"
+#include "apps/dataset/make_b3r.h"
+#include "apps/dataset/make_default.h"
+#include "apps/dataset/set_folder.h"
+#include "apps/report.h"
+#include "apps/workers.h"
+
+namespace corral {
+namespace {
+
+void add_output(CLI::App& command, std::string& output) {
+  command.add_option("-o,--output", output, "Folder of the new set")->type_name("FOLDER")->required();
+}
+
+void add_seed(CLI::App& command, std::uint64_t& seed) {
+  command.add_option("--seed", seed, "Seed of all that is random")->capture_default_str();
+}
+
+void add_b3r(CLI::App& make, Action& action) {
+  struct Settings {
+    std::string models;
+    MakeB3rOptions options;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("b3r", "Retrieval: moved copies of models at 9 levels of noise and 9 of density");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--models", settings->models, "Folder of the models: every mesh in it")
+      ->type_name("FOLDER")
+      ->required();
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  command->add_option("--scenes-per-model", settings->options.scenes_per_model, "Moved copies of each model")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Noise of 0.05 .. 0.45 pr, densities of 0.9 .. 0.1. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make b3r --models meshes -o data/b3r --scenes-per-model 2");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      MakeB3rOptions& options = settings->options;
+      options.models = mesh_files(settings->models);
+      options.parallel = workers(settings->threads);
+      Progress progress(static_cast<double>(options.models.size()) * options.scenes_per_model);
+      make_b3r(options, progress);
+      return kOk;
+    };
+  });
+}
+
+void add_default(CLI::App& make, Action& action) {
+  struct Settings {
+    MakeDefaultOptions options;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("default", "All sets of the study from meshes that Debian packages bring");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--meshes", settings->options.meshes, "Folder of libcgal-demo's meshes")
+      ->type_name("FOLDER")
+      ->required();
+  command->add_option("--scenes", settings->options.scenes, "Folder of opencv-doc's scenes; without it no real ones")
+      ->type_name("FOLDER");
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "'corral dataset list' says which files it takes. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make default --meshes build/data/meshes --scenes build/data/scenes -o "
+      "build/data/default");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      settings->options.parallel = workers(settings->threads);
+      Progress progress(default_steps(settings->options));
+      make_default(settings->options, progress);
+      return kOk;
+    };
+  });
+}
+
+}  // namespace
+
+void add_dataset_make(CLI::App& dataset, Action& action) {
+  auto* make = dataset.add_subcommand("make", "A new set from meshes, with exact truth");
+  make->require_subcommand(1);
+  add_b3r(*make, action);
+  add_default(*make, action);
+}
+
+}  // namespace corral

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "apps/progress.h"
+#include "io/dataset_file.h"
+#include "kernel/parallel.h"
+#include "kernel/rigid_transform.h"
+#include "kernel/surface/mesh.h"
+#include "kernel/surface/nearest_points.h"
+
+namespace corral {
+
+/// A mesh of a data set on its way past, or why there is none.
+struct SweptSurface {
+  std::string problem;  ///< empty if the rest can be used
+  Mesh mesh;
+  std::optional<PointTree> tree;
+  double resolution = 0;    ///< its own, mesh units per pr
+  std::size_t content = 0;  ///< the same for the same vertices and triangles
+};
+
+struct SweptPair {
+  const DatasetPair& pair;
+  const SweptSurface &source, &target;
+  std::optional<RigidTransform> truth;
+  std::string truth_problem;  ///< why there is none although one is named
+
+  bool is_complete() const { return source.problem.empty() && target.problem.empty(); }
+};
+
+/// Calls visit(i, pair i) for every pair of the set, on any threads and in any order; each mesh is read once and kept as
+/// long as a pair needs it. Nothing that is wrong with a file stops the sweep.
+void sweep_pairs(const Dataset& dataset, const ParallelFor& parallel, Progress& progress,
+                 const std::function<void(int, const SweptPair&)>& visit);
+
+/// Mesh units per pr of a pair, by the rule of its set and the resolutions of the two sides.
+double pair_resolution(const Dataset& dataset, double source, double target);
+
+}  // namespace corral
