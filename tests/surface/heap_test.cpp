@@ -105,6 +105,16 @@ TEST(Heap, NothingFloats) {
   EXPECT_GT(leaning, 14) << "of 18";
 }
 
+TEST(Heap, AFlatThingLiesMoreThanItStands) {
+  Mesh mesh = icosphere(3);
+  mesh.vertices.col(1) *= 0.3;
+  const SurfaceTree disc(mesh);
+  double height = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) height += heap({&disc}, kGap, seed)[0].translation.z() / 20;
+  EXPECT_GT(height, 0.3);
+  EXPECT_LT(height, 0.6) << "standing on its rim it would be 1, turned anyhow 0.78";
+}
+
 TEST(Heap, DependsOnTheSeedAlone) {
   const std::vector<SurfaceTree> surfaces = things();
   const PosedSurfaces one = heaped(surfaces, 1), again = heaped(surfaces, 1), other = heaped(surfaces, 2);

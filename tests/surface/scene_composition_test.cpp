@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -80,6 +81,15 @@ TEST_F(Composition, PairsSpreadOverTheBins) {
          measure_visibility(posed, scan_range(posed, scene.sensor, testing::with_spacing(0.05))))
       counts.add(pair.occlusion, pair.clutter);
   }
+  std::map<int, int> uses;
+  std::set<double> sides;
+  for (const ComposedScene& scene : scenes) {
+    for (const int object : scene.objects) ++uses[object];
+    sides.insert(scene.world_from_object[0].rotation(0, 0));
+  }
+  EXPECT_EQ(sides.size(), scenes.size()) << "a heap is seen once";
+  EXPECT_EQ(uses.size(), 6U);
+  for (const auto& [object, scenes_with] : uses) EXPECT_GE(scenes_with, 3) << object << ", in 9 scenes on average";
   EXPECT_LT(counts.outside, 12) << "of 54";
   for (const int pairs : counts.occlusion) EXPECT_GE(pairs, 3);
   for (const int pairs : counts.clutter) EXPECT_GE(pairs, 3);

@@ -55,22 +55,6 @@ TEST(OverlapShare, IsTheSmallerCountOverTheSmallerSurface) {
   EXPECT_EQ(overlap_share(source, source, {}, 0), 1);
 }
 
-TEST(SharedArea, CountsTrianglesWhoseThreeCornersAreNear) {
-  const Mesh surface = testing::grid(5, 3);  // 4 x 2 squares
-  EXPECT_DOUBLE_EQ(surface_area(surface), 8);
-  const RigidTransform up{Eigen::Matrix3d::Identity(), {0, 0, 7}};
-  Points other = surface.vertices.rowwise() + Eigen::RowVector3d(0, 0, 7.5);
-  EXPECT_DOUBLE_EQ(shared_area(surface, other, up, 0.5).value(), 1) << "inclusive";
-  EXPECT_DOUBLE_EQ(shared_area(surface, other, up, 0.4).value(), 0);
-  EXPECT_DOUBLE_EQ(shared_area(surface, other, up.inverse(), 0.5).value(), 0);
-  // Without the points above x = 3 and x = 4, the last two columns of squares lack corners.
-  Indices left;
-  for (int row = 0; row < other.rows(); ++row)
-    if (other(row, 0) < 2.5) left.push_back(row);
-  EXPECT_DOUBLE_EQ(shared_area(surface, other(left, Eigen::all), up, 0.5).value(), 0.5);
-  EXPECT_FALSE(shared_area({surface.vertices, Triangles(0, 3)}, other, up, 0.5)) << "a cloud has no area";
-}
-
 TEST(SurfaceArea, OfAGridAndABall) {
   EXPECT_NEAR(surface_area(testing::grid(4, 3, 2)), 24, 1e-12);
   EXPECT_NEAR(surface_area(testing::icosphere(5, 2)), 16 * std::acos(-1.0), 0.05);
