@@ -55,6 +55,8 @@ int main(int argc, char** argv) {
   corral::add_triangulate(app, action);
   corral::add_evaluate(app, action);
   corral::add_dataset(app, action);
+  corral::add_compare(app, action);
+  corral::add_claims(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -37,6 +37,8 @@ void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);
 void add_dataset_import(CLI::App& dataset, Action& action);
+void add_claims(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);

@@ -33,17 +33,26 @@ ExperimentInfo experiment_of(const Json& json) {
   return info;
 }
 
+StudyPair pair_of(const Json& json) {
+  StudyPair pair{json.at("source"), json.at("target"), json.at("truth"), json.at("resolution"), {}, {}};
+  if (json.contains("source_points")) pair.source_points = json.at("source_points").get<int>();
+  if (json.contains("source_keypoints")) pair.source_keypoints = json.at("source_keypoints").get<int>();
+  return pair;
+}
+
 double number_cell(const std::string& path, std::size_t row, const std::string& cell) {
   const std::optional<double> number = parse_double(cell);
   if (!number || !std::isfinite(*number))
-    throw IoError(path, "row " + std::to_string(row + 1), "found " + corral::quoted(cell) + ", expected a finite number");
+    throw IoError(path, "row " + std::to_string(row + 1),
+                  "found " + corral::quoted(cell) + ", expected a finite number");
   return *number;
 }
 
 int index_cell(const std::string& path, std::size_t row, const std::string& cell) {
   const auto number = parse_int(cell);
   if (!number || *number < 0 || *number > 1'000'000'000)
-    throw IoError(path, "row " + std::to_string(row + 1), "found " + corral::quoted(cell) + ", expected a number of a vertex");
+    throw IoError(path, "row " + std::to_string(row + 1),
+                  "found " + corral::quoted(cell) + ", expected a number of a vertex");
   return static_cast<int>(*number);
 }
 
@@ -59,8 +68,7 @@ RunFolder read_run(const std::string& folder) {
   try {
     const Json manifest = Json::parse(read_file(path));
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));
-    for (const auto& [name, pair] : manifest.at("pairs").items())
-      run.pairs[name] = {pair.at("source"), pair.at("target"), pair.at("truth"), pair.at("resolution")};
+    for (const auto& [name, pair] : manifest.at("pairs").items()) run.pairs[name] = pair_of(pair);
   } catch (const Json::exception& error) {
     throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
   }
@@ -82,7 +90,8 @@ PairSelections read_selections(const std::string& path) {
     if (!cells[2].empty()) selections.residual_pr.push_back(number_cell(path, row, cells[2]));
     for (std::size_t column = 3; column < cells.size(); ++column) {
       if (cells[column] != "0" && cells[column] != "1")
-        throw IoError(path, "row " + std::to_string(row + 1), "found " + corral::quoted(cells[column]) + ", expected 0 or 1");
+        throw IoError(path, "row " + std::to_string(row + 1),
+                      "found " + corral::quoted(cells[column]) + ", expected 0 or 1");
       if (cells[column] == "1") selections.selected[table.header[column]].push_back(static_cast<int>(row));
     }
   }
