@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <thread>
 
 #include "apps/experiment/assemble.h"
 #include "apps/experiment/manifest.h"
@@ -121,7 +123,9 @@ FolderLock::FolderLock(const std::string& folder) {
   const std::string path = folder + "/lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw IoError(path, "", "cannot be created");
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  // A call that was killed a moment ago may still be on its way out.
+  for (int attempt = 0; attempt < 40; ++attempt, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
   throw IoError(folder, "", "another call is working on this run, expected to be alone");
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "apps/experiment/run_folder.h"
+#include "apps/experiment/study.h"
 #include "kernel/number_text.h"
 #include "tests/apps/small_study.h"
 
@@ -189,6 +190,17 @@ TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {
   outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_THAT(outcome.err, HasSubstr("other data"));
+}
+
+TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
+  std::filesystem::create_directories(place_ / "run");
+  {
+    const FolderLock lock(place_ / "run");
+    const Outcome outcome = evaluate("-o run");
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("another call"));
+  }
+  EXPECT_EQ(evaluate("-o run").status, 0);
 }
 
 TEST_F(Evaluate, DenseFillsItsOwnColumns) {
