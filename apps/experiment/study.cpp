@@ -21,13 +21,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a killed call left half written: all finished files end in .csv or .json.
+/// What a killed call left half written: of all finished files the names end in .csv or .json, or have no ending.
 void remove_unfinished(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> unfinished;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
-    if (entry.is_regular_file(ignored) && entry.path().extension() != ".csv" && entry.path().extension() != ".json")
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    const std::string ending = entry.path().extension().string();
+    if (entry.is_regular_file(ignored) && !ending.empty() && ending != ".csv" && ending != ".json")
       unfinished.push_back(entry.path());
+  }
   for (const fs::path& file : unfinished) remove_file(file.string());
 }
 
@@ -139,8 +141,7 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   const FolderLock lock(settings.run);
   check_same_run(settings.run, list, inputs);
   const fs::path folder(settings.run);
-  remove_unfinished(folder / "units");
-  remove_unfinished(folder / "selections");
+  for (const char* part : {"units", "selections", "cache"}) remove_unfinished(folder / part);
   const std::string manifest = (folder / "manifest.json").string();
   std::error_code ignored;
   if (!fs::exists(manifest, ignored)) write_file(manifest, manifest_text(list, inputs, {}, settings.command_line));
