@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <thread>
 
 #include "apps/experiment/assemble.h"
 #include "apps/experiment/manifest.h"
@@ -19,13 +21,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a killed call left half written: all finished files end in .csv or .json.
+/// What a killed call left half written: of all finished files the names end in .csv or .json, or have no ending.
 void remove_unfinished(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> unfinished;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
-    if (entry.is_regular_file(ignored) && entry.path().extension() != ".csv" && entry.path().extension() != ".json")
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    const std::string ending = entry.path().extension().string();
+    if (entry.is_regular_file(ignored) && !ending.empty() && ending != ".csv" && ending != ".json")
       unfinished.push_back(entry.path());
+  }
   for (const fs::path& file : unfinished) remove_file(file.string());
 }
 
@@ -121,7 +125,9 @@ FolderLock::FolderLock(const std::string& folder) {
   const std::string path = folder + "/lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw IoError(path, "", "cannot be created");
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  // A call that was killed a moment ago may still be on its way out.
+  for (int attempt = 0; attempt < 40; ++attempt, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
   throw IoError(folder, "", "another call is working on this run, expected to be alone");
 }
@@ -135,8 +141,7 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   const FolderLock lock(settings.run);
   check_same_run(settings.run, list, inputs);
   const fs::path folder(settings.run);
-  remove_unfinished(folder / "units");
-  remove_unfinished(folder / "selections");
+  for (const char* part : {"units", "selections", "cache"}) remove_unfinished(folder / part);
   const std::string manifest = (folder / "manifest.json").string();
   std::error_code ignored;
   if (!fs::exists(manifest, ignored)) write_file(manifest, manifest_text(list, inputs, {}, settings.command_line));

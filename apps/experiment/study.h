@@ -36,7 +36,7 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
 /// Keeps others from working in a folder as long as it lives; the system lets go of it when the program ends in any way.
 class FolderLock {
  public:
-  explicit FolderLock(const std::string& folder);  ///< throws IoError if another has it
+  explicit FolderLock(const std::string& folder);  ///< throws IoError if another keeps it for two seconds
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
