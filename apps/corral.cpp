@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   corral::add_score(app, action);
   corral::add_groupers(app, action);
   corral::add_perturb(app, action);
+  corral::add_scan(app, action);
   corral::add_triangulate(app, action);
   corral::add_dataset(app, action);
   try {

@@ -31,6 +31,7 @@ void add_run(CLI::App& app, Action& action);
 void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
+void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);
 void add_dataset_import(CLI::App& dataset, Action& action);
@@ -42,6 +43,9 @@ Mesh read_surface(const std::string& path);
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
 void check_threshold(double threshold_pr);        ///< throws UsageError
+
+/// The text of an option as a point or direction "x,y,z". Throws UsageError.
+Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
 
 /// --threads, checked where workers() are made of it.
 void add_threads(CLI::App& command, int& threads);

@@ -24,21 +24,6 @@ struct Settings {
   bool json = false;
 };
 
-Eigen::Vector3d parse_vector(const std::string& option, const std::string& text) {
-  Eigen::Vector3d vector;
-  std::size_t begin = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
-    const std::optional<double> number =
-        end == std::string::npos ? std::nullopt : parse_double(std::string_view(text).substr(begin, end - begin));
-    if (!number || !std::isfinite(*number))
-      throw UsageError(option + ": found '" + text + "', expected three finite numbers x,y,z");
-    vector(axis) = *number;
-    begin = end + 1;
-  }
-  return vector;
-}
-
 ViewOptions view_options(const Settings& settings) {
   ViewOptions options = settings.options;
   options.sensor = parse_vector("--sensor", settings.sensor);
@@ -89,6 +74,21 @@ int triangulate(const Settings& settings) {
 }
 
 }  // namespace
+
+Eigen::Vector3d parse_vector(const std::string& option, const std::string& text) {
+  Eigen::Vector3d vector;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    const std::optional<double> number =
+        end == std::string::npos ? std::nullopt : parse_double(std::string_view(text).substr(begin, end - begin));
+    if (!number || !std::isfinite(*number))
+      throw UsageError(option + ": found '" + text + "', expected three finite numbers x,y,z");
+    vector(axis) = *number;
+    begin = end + 1;
+  }
+  return vector;
+}
 
 void add_triangulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("triangulate", "Faces for a range scan that is a point cloud seen by one sensor");

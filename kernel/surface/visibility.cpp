@@ -2,6 +2,7 @@
 #include "kernel/surface/visibility.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "kernel/surface/nearest_points.h"
 
@@ -66,6 +67,16 @@ double surface_area(const Mesh& mesh) {
   double area = 0;
   for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face) area += face_area(mesh, face);
   return area;
+}
+
+std::vector<Visibility> measure_visibility(const PosedSurfaces& scene, const RangeScan& scan) {
+  const double whole = std::accumulate(scan.patch_areas.begin(), scan.patch_areas.end(), 0.0);
+  std::vector<Visibility> shown;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const double patch = scan.patch_areas[i];
+    shown.push_back({1 - patch / surface_area(scene[i].surface->mesh()), whole > 0 ? 1 - patch / whole : 1});
+  }
+  return shown;
 }
 
 }  // namespace corral

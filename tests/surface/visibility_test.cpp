@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kernel/random.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tables.h"
@@ -51,6 +53,12 @@ TEST(OverlapShare, IsTheSmallerCountOverTheSmallerSurface) {
   EXPECT_EQ(overlap_share(source, target, shift.inverse(), 1), 0);
   EXPECT_EQ(overlap_share(source, Points(0, 3), shift, 1), 0);
   EXPECT_EQ(overlap_share(source, source, {}, 0), 1);
+}
+
+TEST(SurfaceArea, OfAGridAndABall) {
+  EXPECT_NEAR(surface_area(testing::grid(4, 3, 2)), 24, 1e-12);
+  EXPECT_NEAR(surface_area(testing::icosphere(5, 2)), 16 * std::acos(-1.0), 0.05);
+  EXPECT_EQ(surface_area({points_of({{0, 0, 0}}), Triangles(0, 3)}), 0);
 }
 
 TEST(SharedArea, CountsTrianglesWhoseThreeCornersAreNear) {
