@@ -82,7 +82,7 @@ std::string report_page(const std::vector<RunFolder>& runs, const PageOptions& o
   data.update(page_scenes(runs, choose_scenes(runs, options.pairs_in_3d)));
   const EmbeddedFiles& files = embedded_page();
   std::string own;
-  for (const char* name : {"data.js", "panels.js", "pair_view.js", "records.js", "report.js"})
+  for (const char* name : {"data.js", "zoom.js", "panels.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
     own += script_in_html(files.at(name));
   return filled(files.at("report.html"), {{"title", text_in_html(options.title)},
                                           {"style", files.at("report.css")},

@@ -10,7 +10,7 @@ namespace corral {
 
 struct PageOptions {
   std::string title = "Correspondence grouping: what the runs show";
-  int pairs_in_3d = 60;  ///< pairs whose surfaces and matches the page carries; about 0.25 MB each at the most
+  int pairs_in_3d = 60;  ///< pairs whose surfaces and matches the page carries; about 0.3 MB each at the most
   std::string verdicts;  ///< JSON: a list of {id, verdict, margin, statement}; more members are shown too. Empty: none
   std::string scripts = "/usr/share/javascript";  ///< where Debian's libjs-three and libjs-chart.js are
 };
