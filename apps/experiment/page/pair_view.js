@@ -125,7 +125,8 @@ const pairView = (() => {
 
   function resetView() {
     if (!halves.length) return;
-    const box = halves[0].box, slope = Math.tan(camera.fov / 2 * Math.PI / 180);
+    const box = boxOf(...halves.map(half => [...half.box.low, ...half.box.high])),
+          slope = Math.tan(camera.fov / 2 * Math.PI / 180);
     home = 1.06 * Math.max(box.size[1] / 2 / slope, box.size[0] / 2 / slope / aspect()) + box.size[2] / 2;
     controls.reset();
     controls.target.set(...box.middle);
