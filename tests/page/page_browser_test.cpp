@@ -58,7 +58,7 @@ struct Desk {
 
   ScratchFolder folder;
   RunFolder run;
-  Browser browser{1000, 700};
+  Browser browser{800, 600};
 };
 
 class PageInBrowser : public ::testing::Test {
