@@ -25,7 +25,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the same.
+/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the
+/// same.
 std::string json_in_html(const Json& json) {
   return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }

@@ -243,7 +243,7 @@ const pairView = (() => {
     byId('pair-view').hidden = !scene || Boolean(scene.problem);
     if (!scene || scene.problem) {
       byId('pair-note').textContent = record.selection === '' ?
-          `${record.pair}: nothing was matched, so there is nothing to draw (${record.status}).` :
+          `${record.pair}: the run kept no selections of it (${record.status}).` :
           scene ? `${record.pair} cannot be drawn: ${scene.problem}` :
                   `${record.pair} is not among the ${
                       scenes.length} pairs whose surfaces this page carries; its matches and selections are in ${

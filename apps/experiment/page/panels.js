@@ -22,9 +22,11 @@ const panels = (() => {
 
   const meanOf = (experiment, level, method) => experiment.means.find(m => m.level === level && m.method === method);
 
+  const valueOf = (metric, value) => metric.logarithmic ? String(Number(value.toPrecision(3))) : fixed(value, 3);
+
   function linesOf(mean) {
     const share =
-        metrics.filter(m => isNumber(mean[m.name])).map(m => `${m.title.toLowerCase()} ${fixed(mean[m.name], 3)}`);
+        metrics.filter(m => isNumber(mean[m.name])).map(m => `${m.title.toLowerCase()} ${valueOf(m, mean[m.name])}`);
     const counts = ['pairs', 'excluded', 'empty', 'failed', 'runs']
                        .filter(name => isNumber(mean[name]))
                        .map(name => `${name} ${mean[name]}`);
@@ -131,7 +133,7 @@ const panels = (() => {
                   items.length ? describe(items[0].datasetIndex, items[0].dataIndex)[0] :
                                  '',
               label: item => item.chart.tooltip.dataPoints.length > 1 ?
-                  `${labelOf(item.dataset.label)} ${fixed(item.raw, 3)}` :
+                  `${labelOf(item.dataset.label)} ${valueOf(metric, item.raw)}` :
                   describe(item.datasetIndex, item.dataIndex).slice(1)
             }
           },
