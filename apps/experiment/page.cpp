@@ -25,7 +25,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the same.
+/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the
+/// same.
 std::string json_in_html(const Json& json) {
   return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
 }
@@ -82,7 +83,7 @@ std::string report_page(const std::vector<RunFolder>& runs, const PageOptions& o
   data.update(page_scenes(runs, choose_scenes(runs, options.pairs_in_3d)));
   const EmbeddedFiles& files = embedded_page();
   std::string own;
-  for (const char* name : {"data.js", "panels.js", "pair_view.js", "records.js", "report.js"})
+  for (const char* name : {"data.js", "zoom.js", "panels.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
     own += script_in_html(files.at(name));
   return filled(files.at("report.html"), {{"title", text_in_html(options.title)},
                                           {"style", files.at("report.css")},

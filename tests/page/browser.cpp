@@ -65,7 +65,8 @@ Browser::Browser(int width, int height) {
   from_browser_ = up[0];
   const Json target = call("Target.createTarget", {{"url", "about:blank"}});
   session_ = call("Target.attachToTarget", {{"targetId", target.at("targetId")}, {"flatten", true}}).at("sessionId");
-  for (const char* domain : {"Page.enable", "Runtime.enable", "Network.enable"}) call(domain, Json::object());
+  for (const char* domain : {"Page.enable", "Runtime.enable", "Network.enable", "Log.enable"})
+    call(domain, Json::object());
   call("Emulation.setDeviceMetricsOverride",
        {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
@@ -172,6 +173,8 @@ Json Browser::receive() {
   const Json parameters = message.value("params", Json::object());
   if (method == "Runtime.exceptionThrown" ||
       (method == "Runtime.consoleAPICalled" && parameters.value("type", "") == "error"))
+    complaints_.push_back(parameters.dump());
+  if (method == "Log.entryAdded" && parameters.at("entry").value("level", "") == "error")
     complaints_.push_back(parameters.dump());
   if (method == "Network.requestWillBeSent") {
     const std::string url = parameters.at("request").at("url");

@@ -58,7 +58,7 @@ struct Desk {
 
   ScratchFolder folder;
   RunFolder run;
-  Browser browser{1000, 700};
+  Browser browser{800, 600};
 };
 
 class PageInBrowser : public ::testing::Test {
@@ -125,7 +125,8 @@ class PageInBrowser : public ::testing::Test {
               half + R"js(';
       for (let i = 0; i < all.length; i += 4) {
         const x = i / 4 % width, r = all[i], g = all[i + 1], b = all[i + 2];
-        if ((half === 'left' && x >= width / 2) || (half === 'right' && x < width / 2) || (r > 215 && g > 220 && b > 225)) continue;
+        const elsewhere = (half === 'left' && x >= width / 2) || (half === 'right' && x < width / 2);
+        if (elsewhere || (r > 215 && g > 220 && b > 225)) continue;
         counts.sum = (counts.sum * 31 + r + 3 * g + 7 * b) % 1000003;
         if (g > r + 60 && g > b + 12) ++counts.right;
         else if (r > g + 60 && r > b + 80) ++counts.wrong;
@@ -319,8 +320,10 @@ TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
     const s = pairView.state.scene, t = s.truth;
     let worst = 0;
     for (let i = 0; i < s.matches; ++i) {
-      const moved = [0, 1, 2].map(r => t[4 * r] * s.p[3 * i] + t[4 * r + 1] * s.p[3 * i + 1] + t[4 * r + 2] * s.p[3 * i + 2] + t[4 * r + 3]);
-      worst = Math.max(worst, Math.abs(Math.hypot(...moved.map((v, r) => v - s.q[3 * i + r])) / s.resolution - s.distance[i]));
+      const [x, y, z] = s.p.subarray(3 * i, 3 * i + 3);
+      const apart = [0, 1, 2].map(r => t.slice(4 * r, 4 * r + 4)
+          .reduce((sum, v, k) => sum + v * [x, y, z, 1][k], -s.q[3 * i + r]));
+      worst = Math.max(worst, Math.abs(Math.hypot(...apart) / s.resolution - s.distance[i]));
     }
     return worst; })())js");
   EXPECT_LT(worst, 0.01);
@@ -331,6 +334,20 @@ TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
          "a.max.distanceTo(b.max), a.min.distanceTo(a.max)]; })()");
   EXPECT_LT(box[0], 0.05 * box[2].get<double>());
   EXPECT_LT(box[1], 0.05 * box[2].get<double>());
+
+  // Without a truth nothing is right or wrong: what was kept is drawn in a colour of its own.
+  js("Object.assign(data.scenes[1], {residuals: null, truth: null})");
+  choose("scene", js("byId('scene').options[1].value"));
+  choose("layout", "beside");
+  const Json drawn =
+      js("[pairView.halves()[0].groups.kept.length, pairView.state.scene.kept[byId('left-method').value]."
+         "filter(Boolean).length, byId('left-caption').textContent]");
+  EXPECT_GT(drawn[0], 0);
+  EXPECT_EQ(drawn[0], drawn[1]);
+  EXPECT_THAT(drawn[2].get<std::string>(), HasSubstr("no truth to judge them"));
+  const Json unjudged = pixels();
+  EXPECT_LT(unjudged["right"].get<int>() + unjudged["wrong"].get<int>(), 100);
+  EXPECT_GT(unjudged["target"], 5000);
 }
 
 }  // namespace

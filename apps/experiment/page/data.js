@@ -3,14 +3,18 @@
 'use strict';
 
 const data = JSON.parse(document.getElementById('data').textContent);
-data.experiments.sort((a, b) => (a.figure || '~').localeCompare(b.figure || '~'));  // panels in the paper's order, others behind them
+// Panels in the paper's order, others behind them.
+data.experiments.sort((a, b) => (a.figure || '~').localeCompare(b.figure || '~'));
 
-/// An element with attributes and children; texts become text, never markup. An attribute that is false or null is left out.
+/// An element with attributes and children; texts become text, never markup. An attribute that is false or null is left
+/// out.
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === 'function') made.addEventListener(name, value);
-    else if (value !== false && value !== null) made.setAttribute(name, value === true ? '' : value);
+    if (typeof value === 'function')
+      made.addEventListener(name, value);
+    else if (value !== false && value !== null)
+      made.setAttribute(name, value === true ? '' : value);
   }
   made.append(...children);
   return made;
@@ -28,7 +32,8 @@ const records = (() => {
   const columns = data.records, worded = ['experiment', 'dataset', 'level', 'pair', 'method', 'status', 'selection'];
   return (columns.run || []).map((_, row) => {
     const record = {row};
-    for (const name in columns) record[name] = worded.includes(name) ? data.words[columns[name][row]] : columns[name][row];
+    for (const name in columns)
+      record[name] = worded.includes(name) ? data.words[columns[name][row]] : columns[name][row];
     return record;
   });
 })();
@@ -44,17 +49,28 @@ for (const record of records) {
 const bounds = unique(data.experiments.flatMap(e => e.bounds));
 const methods = unique([...data.experiments.flatMap(e => e.methods), ...bounds]);
 const knownStyles = {
-  ss: {label: 'SS', color: '#000000', marker: 'circle', dash: [5, 3]}, nnsr: {label: 'NNSR', color: '#e69f00', marker: 'rect', dash: []},
-  ransac: {label: 'RANSAC', color: '#0072b2', marker: 'triangle', dash: []}, st: {label: 'ST', color: '#cc79a7', marker: 'triangle', rotation: 180, dash: [9, 3]},
-  gc: {label: 'GC', color: '#009e73', marker: 'rectRot', dash: []}, hough: {label: '3DHV', color: '#56b4e9', marker: 'star', dash: [6, 2, 1, 2]},
+  ss: {label: 'SS', color: '#000000', marker: 'circle', dash: [5, 3]},
+  nnsr: {label: 'NNSR', color: '#e69f00', marker: 'rect', dash: []},
+  ransac: {label: 'RANSAC', color: '#0072b2', marker: 'triangle', dash: []},
+  st: {label: 'ST', color: '#cc79a7', marker: 'triangle', rotation: 180, dash: [9, 3]},
+  gc: {label: 'GC', color: '#009e73', marker: 'rectRot', dash: []},
+  hough: {label: '3DHV', color: '#56b4e9', marker: 'star', dash: [6, 2, 1, 2]},
   si: {label: 'SI', color: '#d55e00', marker: 'circle', open: true, dash: [3, 2]},
-  oracle: {label: 'oracle', color: '#888888', marker: 'line', dash: [2, 3]}, floor: {label: 'floor', color: '#888888', marker: 'line', dash: [7, 4]},
+  oracle: {label: 'oracle', color: '#888888', marker: 'line', dash: [2, 3]},
+  floor: {label: 'floor', color: '#888888', marker: 'line', dash: [7, 4]},
 };
 const furtherColors = ['#882255', '#999933', '#332288', '#aa4499', '#117733', '#661100', '#6699cc', '#aa4466'];
 const furtherMarkers = ['crossRot', 'cross', 'rectRounded', 'star', 'triangle'];
 const styles = new Map(methods.map(method => {
   const place = methods.filter(m => !(m in knownStyles)).indexOf(method);
-  return [method, knownStyles[method] || {label: method, color: furtherColors[place % 8], marker: furtherMarkers[place % 5], dash: place < 8 ? [] : [4, 2]}];
+  return [
+    method, knownStyles[method] || {
+      label: method,
+      color: furtherColors[place % 8],
+      marker: furtherMarkers[place % 5],
+      dash: place < 8 ? [] : [4, 2]
+    }
+  ];
 }));
 const labelOf = method => (styles.get(method) || {label: method}).label;
 

@@ -3,8 +3,11 @@
 'use strict';
 
 const metrics = [
-  {name: 'precision', title: 'Precision'}, {name: 'recall', title: 'Recall'}, {name: 'f1', title: 'F1'},
-  {name: 'success_5pr', title: 'Registration success'}, {name: 'median_ms', title: 'Median time of grouping (ms)', logarithmic: true},
+  {name: 'precision', title: 'Precision'},
+  {name: 'recall', title: 'Recall'},
+  {name: 'f1', title: 'F1'},
+  {name: 'success_5pr', title: 'Registration success'},
+  {name: 'median_ms', title: 'Median time of grouping (ms)', logarithmic: true},
 ];
 
 const panels = (() => {
@@ -19,59 +22,15 @@ const panels = (() => {
 
   const meanOf = (experiment, level, method) => experiment.means.find(m => m.level === level && m.method === method);
 
+  const valueOf = (metric, value) => metric.logarithmic ? String(Number(value.toPrecision(3))) : fixed(value, 3);
+
   function linesOf(mean) {
-    const share = metrics.filter(m => isNumber(mean[m.name]))
-      .map(m => `${m.title.toLowerCase()} ${fixed(mean[m.name], 3)}`);
-    const counts = ['pairs', 'excluded', 'empty', 'failed', 'runs'].filter(name => isNumber(mean[name])).map(name => `${name} ${mean[name]}`);
+    const share =
+        metrics.filter(m => isNumber(mean[m.name])).map(m => `${m.title.toLowerCase()} ${valueOf(m, mean[m.name])}`);
+    const counts = ['pairs', 'excluded', 'empty', 'failed', 'runs']
+                       .filter(name => isNumber(mean[name]))
+                       .map(name => `${name} ${mean[name]}`);
     return [...share, counts.join(', ')];
-  }
-
-  // A rectangle drawn with the mouse becomes the range of both axes.
-  const zoom = {
-    id: 'zoom',
-    afterInit(chart) {
-      const canvas = chart.canvas;
-      canvas.addEventListener('mousedown', event => {
-        if (event.button === 0) chart.box = {x0: event.offsetX, y0: event.offsetY, x1: event.offsetX, y1: event.offsetY};
-      });
-      canvas.addEventListener('mousemove', event => {
-        if (!chart.box) return;
-        Object.assign(chart.box, {x1: event.offsetX, y1: event.offsetY});
-        chart.draw();
-      });
-      canvas.addEventListener('mouseleave', () => { chart.box = null; chart.draw(); });
-      canvas.addEventListener('mouseup', () => {
-        const box = chart.box;
-        chart.box = null;
-        chart.dragged = Boolean(box) && Math.abs(box.x1 - box.x0) > 6 && Math.abs(box.y1 - box.y0) > 6;
-        if (chart.dragged) zoomTo(chart, box);
-      });
-      canvas.addEventListener('dblclick', () => resetZoom(chart));
-    },
-    afterDraw(chart) {
-      if (!chart.box) return;
-      const {x0, y0, x1, y1} = chart.box;
-      chart.ctx.save();
-      chart.ctx.fillStyle = 'rgba(11, 92, 173, .12)';
-      chart.ctx.fillRect(x0, y0, x1 - x0, y1 - y0);
-      chart.ctx.restore();
-    },
-  };
-
-  function zoomTo(chart, {x0, y0, x1, y1}) {
-    const {x, y} = chart.scales, last = chart.data.labels.length - 1;
-    const columns = [x.getValueForPixel(Math.min(x0, x1)), x.getValueForPixel(Math.max(x0, x1))];
-    let [first, end] = columns.map(column => Math.max(0, Math.min(last, column)));
-    if (first === end) [first, end] = [Math.max(0, first - 1), Math.min(last, end + 1)];
-    Object.assign(chart.options.scales.x, {min: first, max: end});
-    Object.assign(chart.options.scales.y, {min: y.getValueForPixel(Math.max(y0, y1)), max: y.getValueForPixel(Math.min(y0, y1))});
-    chart.update();
-  }
-
-  function resetZoom(chart) {
-    Object.assign(chart.options.scales.x, {min: undefined, max: undefined});
-    Object.assign(chart.options.scales.y, chart.range);
-    chart.update();
   }
 
   function datasetOf(experiment, metric, method) {
@@ -82,10 +41,21 @@ const panels = (() => {
         const value = (meanOf(experiment, level, method) || {})[metric.name];
         return isNumber(value) ? value : null;
       }),
-      borderColor: style.color, backgroundColor: style.color, pointBackgroundColor: style.open ? '#fff' : style.color, borderWidth: 1.6, borderDash: style.dash,
-      pointStyle: style.marker, rotation: style.rotation || 0, pointBorderColor: style.color,
-      pointRadius: bounds.includes(method) ? 0 : 4, pointHoverRadius: 6, pointHitRadius: 7, pointBorderWidth: 1.5,
-      spanGaps: false, clip: 7, hidden: hidden.has(method),
+      borderColor: style.color,
+      backgroundColor: style.color,
+      pointBackgroundColor: style.open ? '#fff' : style.color,
+      borderWidth: 1.6,
+      borderDash: style.dash,
+      pointStyle: style.marker,
+      rotation: style.rotation || 0,
+      pointBorderColor: style.color,
+      pointRadius: bounds.includes(method) ? 0 : 4,
+      pointHoverRadius: 6,
+      pointHitRadius: 7,
+      pointBorderWidth: 1.5,
+      spanGaps: false,
+      clip: 7,
+      hidden: hidden.has(method),
     };
   }
 
@@ -95,8 +65,9 @@ const panels = (() => {
     chart.canvas.addEventListener('keydown', event => {
       const shown = chart.data.datasets.map((_, i) => i).filter(i => chart.isDatasetVisible(i));
       const steps = {ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowDown: [0, 1], ArrowUp: [0, -1]}[event.key];
-      if (event.key === 'Escape') return resetZoom(chart);
-      if (event.key === 'Enter' && column >= 0) return choosePoint(chart.experiment, chart.data.labels[column], chart.data.datasets[series].label);
+      if (event.key === 'Escape') return panelZoom.reset(chart);
+      if (event.key === 'Enter' && column >= 0)
+        return choosePoint(chart.experiment, chart.data.labels[column], chart.data.datasets[series].label);
       if (!steps || shown.length === 0) return;
       event.preventDefault();
       column = Math.max(0, Math.min(chart.data.labels.length - 1, column + steps[0]));
@@ -110,38 +81,72 @@ const panels = (() => {
   }
 
   function addPanel(experiment, metric, grid) {
-    const canvas = element('canvas', {tabindex: 0, role: 'img', 'aria-label':
-      `${metric.title} of ${experiment.methods.length} groupers against ${experiment.axis}; the numbers are in the table below. Arrow keys walk through the points.`});
-    grid.append(element('figure', {}, element('figcaption', {}, metric.title), element('div', {class: 'plot'}, canvas)));
+    const canvas = element('canvas', {
+      tabindex: 0,
+      role: 'img',
+      'aria-label': `${metric.title} of ${experiment.methods.length} groupers against ${
+          experiment.axis}; the numbers are in the table below. Arrow keys walk through the points.`
+    });
+    grid.append(
+        element('figure', {}, element('figcaption', {}, metric.title), element('div', {class: 'plot'}, canvas)));
     const shown = [...experiment.methods, ...experiment.bounds];
     const describe = (series, column) => {
       const mean = meanOf(experiment, experiment.levels[column], shown[series]);
       return [`${labelOf(shown[series])} at ${experiment.levels[column]}`, ...(mean ? linesOf(mean) : ['no value'])];
     };
-    const range = metric.logarithmic ? {min: undefined, max: undefined} : {min: -0.03, max: 1.03};  // room for markers at the ends
+    const range = metric.logarithmic ? {min: undefined, max: undefined} :
+                                       {min: -0.03, max: 1.03};  // room for markers at the ends
     const chart = new Chart(canvas, {
       type: 'line',
       data: {labels: experiment.levels, datasets: shown.map(method => datasetOf(experiment, metric, method))},
       options: {
-        maintainAspectRatio: false, interaction: {mode: 'nearest', intersect: true}, layout: {padding: {top: 6, right: 8}},
+        maintainAspectRatio: false,
+        interaction: {mode: 'nearest', intersect: true},
+        layout: {padding: {top: 6, right: 8}},
         scales: {
-          x: {title: {display: true, text: experiment.axis}, grid: {display: false}, ticks: {maxRotation: 40}, offset: true},
-          y: {...range, type: metric.logarithmic ? 'logarithmic' : 'linear', grid: {color: '#eceff1'},
-            ticks: {maxTicksLimit: 8, includeBounds: false, callback: value => metric.logarithmic ? value : Number(value.toFixed(3))}},
+          x: {
+            title: {display: true, text: experiment.axis},
+            grid: {display: false},
+            ticks: {maxRotation: 40},
+            offset: true
+          },
+          y: {
+            ...range,
+            type: metric.logarithmic ? 'logarithmic' : 'linear',
+            grid: {color: '#eceff1'},
+            ticks: {
+              maxTicksLimit: 8,
+              includeBounds: false,
+              callback: value => metric.logarithmic ? value : Number(value.toFixed(3))
+            }
+          },
         },
         plugins: {
           legend: {display: false},
-          tooltip: {backgroundColor: 'rgba(29, 35, 41, .93)', usePointStyle: true, displayColors: false, callbacks: {
-            // Points on top of each other share one tooltip: then a line each.
-            title: items => items.length > 1 ? `${items.length} groupers at ${items[0].label}` : items.length ? describe(items[0].datasetIndex, items[0].dataIndex)[0] : '',
-            label: item => item.chart.tooltip.dataPoints.length > 1 ? `${labelOf(item.dataset.label)} ${fixed(item.raw, 3)}` : describe(item.datasetIndex, item.dataIndex).slice(1)}},
+          tooltip: {
+            backgroundColor: 'rgba(29, 35, 41, .93)',
+            usePointStyle: true,
+            displayColors: false,
+            callbacks: {
+              // Points on top of each other share one tooltip: then a line each.
+              title: items => items.length > 1 ? `${items.length} groupers at ${items[0].label}` :
+                  items.length ? describe(items[0].datasetIndex, items[0].dataIndex)[0] :
+                                 '',
+              label: item => item.chart.tooltip.dataPoints.length > 1 ?
+                  `${labelOf(item.dataset.label)} ${valueOf(metric, item.raw)}` :
+                  describe(item.datasetIndex, item.dataIndex).slice(1)
+            }
+          },
         },
         onClick: (_, points) => {
-          if (points.length && !chart.dragged) choosePoint(experiment, experiment.levels[points[0].index], shown[points[0].datasetIndex]);
+          if (points.length && !chart.dragged)
+            choosePoint(experiment, experiment.levels[points[0].index], shown[points[0].datasetIndex]);
         },
-        onHover: (event, points) => { event.native.target.style.cursor = points.length ? 'pointer' : 'crosshair'; },
+        onHover: (event, points) => {
+          event.native.target.style.cursor = points.length ? 'pointer' : 'crosshair';
+        },
       },
-      plugins: [zoom],
+      plugins: [panelZoom.plugin],
     });
     Object.assign(chart, {range, experiment, metric: metric.name});
     addKeys(chart, describe);
@@ -151,25 +156,48 @@ const panels = (() => {
   function noteOf(experiment) {
     const perLevel = experiment.levels.map(level => experiment.means.find(m => m.level === level)).filter(Boolean);
     if (perLevel.length === 0) return 'No level of this experiment has a result.';
-    const gaps = perLevel.length < experiment.levels.length ? ` ${counted(experiment.levels.length - perLevel.length, 'level')} without a result: gaps.` : '';
+    const gaps = perLevel.length < experiment.levels.length ?
+        ` ${counted(experiment.levels.length - perLevel.length, 'level')} without a result: gaps.` :
+        '';
     if (perLevel.every(m => !isNumber(m.pairs))) return `Measured alone, on one thread.${gaps}`;
     const sum = (rows, name) => rows.reduce((total, row) => total + (row[name] || 0), 0);
     const pairs = perLevel.map(m => m.pairs), low = Math.min(...pairs), high = Math.max(...pairs);
     const failed = records.filter(r => r.place === experiment && r.status.startsWith('failed')).length;
     const own = experiment.means.filter(m => experiment.methods.includes(m.method));
-    return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +
-      `${sum(perLevel, 'excluded')} excluded (fewer than ${counted(experiment.least_true_matches, 'right match', 'right matches')}); ` +
-      `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
+    return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${
+               experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +
+        `${sum(perLevel, 'excluded')} excluded (fewer than ${
+               counted(experiment.least_true_matches, 'right match', 'right matches')}); ` +
+        `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
   }
 
   function tableOf(experiment) {
     if (experiment.means.length === 0) return '';
     const names = unique(experiment.means.flatMap(Object.keys));
     const textual = ['level', 'method'];
-    return element('details', {}, element('summary', {}, 'Numbers'), element('div', {class: 'wide'}, element('table', {},
-      element('thead', {}, element('tr', {}, ...names.map(name => element('th', {scope: 'col', class: textual.includes(name) && 'text'}, name)))),
-      element('tbody', {}, ...experiment.means.map(mean => element('tr', {}, ...names.map(name =>
-        element('td', {class: textual.includes(name) && 'text'}, name === 'method' ? labelOf(mean.method) : name === 'level' || Number.isInteger(mean[name]) ? String(mean[name]) : fixed(mean[name], 4)))))))));
+    return element(
+        'details', {}, element('summary', {}, 'Numbers'),
+        element(
+            'div', {class: 'wide'},
+            element(
+                'table', {},
+                element(
+                    'thead', {},
+                    element(
+                        'tr', {},
+                        ...names.map(
+                            name => element('th', {scope: 'col', class: textual.includes(name) && 'text'}, name)))),
+                element(
+                    'tbody', {},
+                    ...experiment.means.map(
+                        mean => element(
+                            'tr', {},
+                            ...names.map(
+                                name => element(
+                                    'td', {class: textual.includes(name) && 'text'},
+                                    name === 'method'                                    ? labelOf(mean.method) :
+                                        name === 'level' || Number.isInteger(mean[name]) ? String(mean[name]) :
+                                                                                           fixed(mean[name], 4)))))))));
   }
 
   function swatch(style) {
@@ -181,7 +209,8 @@ const panels = (() => {
     pen.setLineDash([]);
     if (style.open) pen.fillStyle = '#fff';
     if (style.marker !== 'line')
-      Chart.helpers.drawPoint(pen, {pointStyle: style.marker, rotation: style.rotation || 0, radius: 4.5, borderWidth: 1.5}, 15, 8);
+      Chart.helpers.drawPoint(
+          pen, {pointStyle: style.marker, rotation: style.rotation || 0, radius: 4.5, borderWidth: 1.5}, 15, 8);
     return canvas;
   }
 
@@ -197,15 +226,19 @@ const panels = (() => {
   function start(onPoint) {
     choosePoint = onPoint;
     for (const method of methods) {
-      const button = element('button', {type: 'button', 'aria-pressed': String(!hidden.has(method)), click: () => toggle(method, button)},
-        swatch(styles.get(method)), labelOf(method));
+      const button = element(
+          'button', {type: 'button', 'aria-pressed': String(!hidden.has(method)), click: () => toggle(method, button)},
+          swatch(styles.get(method)), labelOf(method));
       byId('legend').append(button);
     }
     for (const experiment of data.experiments) {
       const grid = element('div', {class: 'panels'});
       const run = data.runs.length > 1 ? `, run ${data.runs[experiment.run].folder}` : '';
-      byId('panels').append(element('h3', {}, experimentTitle(experiment), ' ', element('span', {class: 'quiet'}, `${experiment.dataset}${run}`)),
-        element('p', {class: 'note'}, noteOf(experiment)), grid);
+      byId('panels').append(
+          element(
+              'h3', {}, experimentTitle(experiment), ' ',
+              element('span', {class: 'quiet'}, `${experiment.dataset}${run}`)),
+          element('p', {class: 'note'}, noteOf(experiment)), grid);
       for (const metric of metrics)
         if (experiment.means.some(mean => isNumber(mean[metric.name]))) addPanel(experiment, metric, grid);
       byId('panels').append(tableOf(experiment));

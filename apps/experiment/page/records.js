@@ -35,7 +35,8 @@ const recordTable = (() => {
     'failed': r => r.status.startsWith('failed'),
   };
 
-  const fill = (id, options) => byId(id).replaceChildren(...options.map(([value, text]) => element('option', {value}, text)));
+  const fill = (id, options) =>
+      byId(id).replaceChildren(...options.map(([value, text]) => element('option', {value}, text)));
   const fillLevels = () => {
     const experiment = data.experiments[Number(byId('filter-experiment').value)];
     fill('filter-level', [['', 'all'], ...(experiment ? experiment.levels.map(level => [level, level]) : [])]);
@@ -52,9 +53,12 @@ const recordTable = (() => {
 
   function refresh() {
     const experiment = data.experiments[Number(byId('filter-experiment').value)], level = byId('filter-level').value;
-    const method = byId('filter-method').value, outcome = outcomes[byId('filter-outcome').value], part = byId('filter-pair').value.toLowerCase();
-    shown = records.filter(r => (byId('filter-experiment').value === '' || r.place === experiment) && (level === '' || r.level === level) &&
-      (method === '' || r.method === method) && (!outcome || outcome(r)) && r.pair.toLowerCase().includes(part));
+    const method = byId('filter-method').value, outcome = outcomes[byId('filter-outcome').value],
+          part = byId('filter-pair').value.toLowerCase();
+    shown = records.filter(
+        r => (byId('filter-experiment').value === '' || r.place === experiment) &&
+            (level === '' || r.level === level) && (method === '' || r.method === method) && (!outcome || outcome(r)) &&
+            r.pair.toLowerCase().includes(part));
     if (order.column) shown.sort(compare);
     page = 0;
     draw();
@@ -66,9 +70,17 @@ const recordTable = (() => {
       const value = column.value(record);
       const text = column.text ? value : fixed(value, column.decimals);
       if (column.title === 'Pair')
-        row.append(element('td', {class: 'text'}, element('button', {type: 'button', title: pairView.has(record) ? 'in 3D' : 'not in 3D on this page'}, text)));
+        row.append(element(
+            'td', {class: 'text'},
+            element(
+                'button', {type: 'button', title: pairView.has(record) ? 'in 3D' : 'not in 3D on this page'}, text)));
       else
-        row.append(element('td', {class: (column.text ? 'text' : '') + (column.title === 'Status' && !/^(refined)$/.test(text) ? ' bad' : '')}, text));
+        row.append(element(
+            'td', {
+              class:
+                  (column.text ? 'text' : '') + (column.title === 'Status' && !/^(refined)$/.test(text) ? ' bad' : '')
+            },
+            text));
     }
     return row;
   }
@@ -77,17 +89,26 @@ const recordTable = (() => {
     const pages = Math.max(1, Math.ceil(shown.length / onPage));
     page = Math.max(0, Math.min(pages - 1, page));
     byId('records-table').tBodies[0].replaceChildren(...shown.slice(page * onPage, (page + 1) * onPage).map(rowOf));
-    byId('records-count').textContent = `${counted(shown.length, 'row')} of ${records.length.toLocaleString('en')}: a pair, a level and a grouper each`;
+    byId('records-count').textContent =
+        `${counted(shown.length, 'row')} of ${records.length.toLocaleString('en')}: a pair, a level and a grouper each`;
     byId('page-number').textContent = `page ${page + 1} of ${pages}`;
     byId('earlier').disabled = page === 0;
     byId('later').disabled = page === pages - 1;
-    byId('records-table').tHead.querySelectorAll('th').forEach((cell, i) =>
-      cell.setAttribute('aria-sort', columns[i] !== order.column ? 'none' : order.descending ? 'descending' : 'ascending'));
+    byId('records-table')
+        .tHead.querySelectorAll('th')
+        .forEach(
+            (cell, i) => cell.setAttribute(
+                'aria-sort',
+                columns[i] !== order.column ? 'none' :
+                    order.descending        ? 'descending' :
+                                              'ascending'));
   }
 
   function sortBy(column) {
-    if (order.column === column) order.descending = !order.descending;
-    else Object.assign(order, {column, descending: false});
+    if (order.column === column)
+      order.descending = !order.descending;
+    else
+      Object.assign(order, {column, descending: false});
     refresh();
   }
 
@@ -107,13 +128,25 @@ const recordTable = (() => {
 
   function start(onRow) {
     choose = onRow;
-    byId('records-table').tHead.append(element('tr', {}, ...columns.map(column =>
-      element('th', {scope: 'col', class: column.text && 'text'}, element('button', {type: 'button', click: () => sortBy(column)}, column.title)))));
-    fill('filter-experiment', [['', 'all'], ...data.experiments.map((e, i) => [i, experimentTitle(e) + (data.runs.length > 1 ? `, ${data.runs[e.run].folder}` : '')])]);
+    byId('records-table')
+        .tHead.append(element(
+            'tr', {},
+            ...columns.map(
+                column => element(
+                    'th', {scope: 'col', class: column.text && 'text'},
+                    element('button', {type: 'button', click: () => sortBy(column)}, column.title)))));
+    fill('filter-experiment', [
+      ['', 'all'],
+      ...data.experiments.map(
+          (e, i) => [i, experimentTitle(e) + (data.runs.length > 1 ? `, ${data.runs[e.run].folder}` : '')])
+    ]);
     fill('filter-method', [['', 'all'], ...methods.map(method => [method, labelOf(method)])]);
     fill('filter-outcome', [['', 'all'], ...Object.keys(outcomes).map(name => [name, name])]);
     fillLevels();
-    byId('filter-experiment').addEventListener('change', () => { fillLevels(); refresh(); });
+    byId('filter-experiment').addEventListener('change', () => {
+      fillLevels();
+      refresh();
+    });
     for (const id of ['filter-level', 'filter-method', 'filter-outcome']) byId(id).addEventListener('change', refresh);
     byId('filter-pair').addEventListener('input', refresh);
     byId('reset-filters').addEventListener('click', () => {
@@ -121,8 +154,14 @@ const recordTable = (() => {
       fillLevels();
       refresh();
     });
-    byId('earlier').addEventListener('click', () => { --page; draw(); });
-    byId('later').addEventListener('click', () => { ++page; draw(); });
+    byId('earlier').addEventListener('click', () => {
+      --page;
+      draw();
+    });
+    byId('later').addEventListener('click', () => {
+      ++page;
+      draw();
+    });
     refresh();
   }
 

@@ -17,18 +17,22 @@
   function showPoint(experiment, level, method) {
     recordTable.filter(experiment, level, method);
     const behind = records.filter(r => r.place === experiment && r.level === level && r.method === method);
-    const drawn = behind.filter(pairView.has), from = (drawn.length ? drawn : behind).sort((a, b) => (a.f1 || 0) - (b.f1 || 0) || a.row - b.row);
+    const drawn = behind.filter(pairView.has),
+          from = (drawn.length ? drawn : behind).sort((a, b) => (a.f1 || 0) - (b.f1 || 0) || a.row - b.row);
     showRecord(from[(from.length - 1) >> 1]);
   }
 
   function summarize() {
     const pairs = unique(records.map(r => `${r.run}/${r.dataset}/${r.pair}`)).length;
     const failed = records.filter(r => r.status.startsWith('failed')).length;
-    const excluded = unique(records.filter(r => r.excluded).map(r => `${r.run}/${r.experiment}/${r.level}/${r.pair}`)).length;
-    byId('summary').textContent = [counted(data.runs.length, 'run'), counted(data.experiments.length, 'experiment'), counted(pairs, 'pair'),
+    const excluded =
+        unique(records.filter(r => r.excluded).map(r => `${r.run}/${r.experiment}/${r.level}/${r.pair}`)).length;
+    byId('summary').textContent = [
+      counted(data.runs.length, 'run'), counted(data.experiments.length, 'experiment'), counted(pairs, 'pair'),
       counted(methods.length - bounds.length, 'grouper'), counted(records.length, 'record'),
-      counted(excluded, 'exclusion of a pair at a level', 'exclusions of a pair at a level'), counted(failed, 'failed record'),
-      `${counted(data.scenes.length, 'pair')} in 3D`].join(' · ');
+      counted(excluded, 'exclusion of a pair at a level', 'exclusions of a pair at a level'),
+      counted(failed, 'failed record'), `${counted(data.scenes.length, 'pair')} in 3D`
+    ].join(' · ');
   }
 
   function showFindings() {
@@ -37,23 +41,37 @@
       byId('findings-note').textContent = 'No findings were evaluated for this page.';
       return;
     }
-    const names = unique(verdicts.flatMap(Object.keys)), text = value => value === null || value === undefined ? '–' : typeof value === 'object' ? JSON.stringify(value) : isNumber(value) && !Number.isInteger(value) ? value.toFixed(3) : String(value);
+    const names = unique(verdicts.flatMap(Object.keys)),
+          text = value => value === null || value === undefined ? '–' :
+        typeof value === 'object'                               ? JSON.stringify(value) :
+        isNumber(value) && !Number.isInteger(value)             ? value.toFixed(3) :
+                                                                  String(value);
     const tally = {};
     for (const {verdict} of verdicts) tally[verdict] = (tally[verdict] || 0) + 1;
-    byId('findings-note').textContent = Object.entries(tally).map(([verdict, count]) => `${count} ${verdict}`).join(' · ');
-    byId('findings-table').tHead.append(element('tr', {}, ...names.map(name => element('th', {scope: 'col', class: 'text'}, name))));
-    byId('findings-table').tBodies[0].append(...verdicts.map(verdict => element('tr', {}, ...names.map(name => {
-      const shown = text(verdict[name]);
-      return name === 'verdict' ? element('td', {class: 'text'}, element('span', {class: `verdict ${shown.split(' ')[0]}`}, shown))
-        : element('td', {class: shown.length > 40 ? 'long' : 'text'}, shown);
-    }))));
+    byId('findings-note').textContent =
+        Object.entries(tally).map(([verdict, count]) => `${count} ${verdict}`).join(' · ');
+    byId('findings-table')
+        .tHead.append(element('tr', {}, ...names.map(name => element('th', {scope: 'col', class: 'text'}, name))));
+    byId('findings-table')
+        .tBodies[0]
+        .append(...verdicts.map(
+            verdict => element('tr', {}, ...names.map(name => {
+              const shown = text(verdict[name]);
+              return name === 'verdict' ?
+                  element('td', {class: 'text'}, element('span', {class: `verdict ${shown.split(' ')[0]}`}, shown)) :
+                  element('td', {class: shown.length > 40 ? 'long' : 'text'}, shown);
+            }))));
   }
 
   function factList(facts) {
-    const shown = value => Array.isArray(value) && value.every(item => typeof item !== 'object') ? value.join(' ')
-      : value !== null && typeof value === 'object' ? factList(value) : value === null ? '–' : String(value);
-    return element('dl', {class: 'facts'}, ...Object.entries(facts).flatMap(([name, value]) =>
-      [element('dt', {}, name.replaceAll('_', ' ')), element('dd', {}, shown(value))]));
+    const shown = value => Array.isArray(value) && value.every(item => typeof item !== 'object') ? value.join(' ') :
+        value !== null && typeof value === 'object'                                              ? factList(value) :
+        value === null                                                                           ? '–' :
+                                                                                                   String(value);
+    return element(
+        'dl', {class: 'facts'},
+        ...Object.entries(facts).flatMap(
+            ([name, value]) => [element('dt', {}, name.replaceAll('_', ' ')), element('dd', {}, shown(value))]));
   }
 
   summarize();
@@ -63,7 +81,9 @@
   showFindings();
   byId('run-facts').append(...data.runs.flatMap(run => [element('h3', {}, run.folder), factList(run.facts)]));
   const first = data.scenes.find(scene => !scene.problem) || data.scenes[0];
-  if (first) showRecord(records.find(r => r.run === first.run && r.selection === first.selection && !bounds.includes(r.method)), false);
+  if (first)
+    showRecord(
+        records.find(r => r.run === first.run && r.selection === first.selection && !bounds.includes(r.method)), false);
   else {
     byId('pair-view').hidden = true;
     byId('pair-note').textContent = 'This page carries no pair in 3D.';
