@@ -62,7 +62,7 @@ bool draws(const std::string& method) {
 
 /// Where the selections of a way to match and to group lie: the paper's way has a short name.
 std::string setting_label(const Experiment& experiment, const WorkUnit& unit, const StudyLevel& level) {
-  std::string text, usual;
+  std::string text;
   for (const Grouper& grouper : groupers())
     for (const auto& [name, value] : method_options(experiment, grouper.name, level))
       text += grouper.name + "." + name + "=" + value + "\n";
