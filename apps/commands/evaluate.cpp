@@ -66,8 +66,9 @@ int evaluate_time(const Settings& settings, const WorkList& list) {
   if (settings.jobs) throw UsageError("--jobs: times are taken in one thread, expected none");
   std::vector<TimeRow> rows;
   {
-    Progress progress(static_cast<double>(list.experiments.front().info.levels.size()) + 1);
-    rows = run_time_study(list, settings.study, [&](const std::string& what, double) { progress.begin(what); });
+    const Experiment& experiment = list.experiments.front();
+    Progress progress(1 + experiment.tables * static_cast<double>(experiment.info.levels.size()));
+    rows = run_time_study(list, settings.study, [&](const std::string& what) { progress.begin(what); });
   }
   Json json = Json::array();
   for (const TimeRow& row : rows)

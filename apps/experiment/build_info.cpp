@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-#include "build_facts.h"  // written by build_facts.cmake
+#include "apps/experiment/build_facts.h"  // written by build_facts.cmake
 #include "io/file.h"
 #include "kernel/error.h"
 

@@ -132,7 +132,10 @@ std::optional<std::string> ContentStore::load(const std::string& key) const {
 }
 
 void ContentStore::save(const std::string& key, const std::string& content) const {
-  write_file(folder_ + "/" + key, content_hash(content) + content);
+  try {
+    write_file(folder_ + "/" + key, content_hash(content) + content);
+  } catch (const IoError&) {  // a full disk: the pair has its answer all the same
+  }
 }
 
 std::optional<Descriptors> ContentStore::descriptors(const std::string& key) const {

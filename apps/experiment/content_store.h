@@ -13,10 +13,11 @@ namespace corral {
 /// 32 hexadecimal digits that differ where contents differ (a 128-bit hash; not against those who forge).
 std::string content_hash(const std::string& content);
 
-/// Intermediate results by the hash of all that they depend on. Whatever is missing or damaged is absent, and is made anew.
+/// Intermediate results by the hash of all that they depend on. Whatever is missing, damaged or could not be written is absent,
+/// and is made anew.
 class ContentStore {
  public:
-  explicit ContentStore(std::string folder);
+  explicit ContentStore(std::string folder);  ///< throws IoError if it cannot be created
 
   std::optional<Descriptors> descriptors(const std::string& key) const;
   std::optional<CorrespondenceSet> matches(const std::string& key) const;

@@ -2,6 +2,7 @@
 #include "apps/experiment/evaluate_unit.h"
 
 #include <algorithm>
+#include <new>
 
 #include "apps/dense_refinement.h"
 #include "apps/evaluate_pair.h"
@@ -53,15 +54,15 @@ PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
 /// One pair with its meshes: what all steps after the matching share.
 class PairStudy {
  public:
-  PairStudy(const WorkUnit& unit, const InputHashes& inputs, const ContentStore& store)
-      : unit_(unit),
-        source_(read_surface(unit.pair.source)),
-        target_(read_surface(unit.pair.target)),
-        matches_(unit_matches(unit, inputs, store, source_, target_)) {
-    if (unit.pair.truth.empty()) return;
-    truth_ =
-        pair_truth(source_, target_, read_transform(unit.pair.truth), matches_.resolution, unit.thresholds_pr.front());
-    for (const double threshold : unit.thresholds_pr)
+  explicit PairStudy(const UnitWork& work)
+      : unit_(work.unit),
+        source_(read_surface(unit_.pair.source)),
+        target_(read_surface(unit_.pair.target)),
+        matches_(unit_matches(work, source_, target_)) {
+    if (unit_.pair.truth.empty()) return;
+    truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
+                        unit_.thresholds_pr.front());
+    for (const double threshold : unit_.thresholds_pr)
       labels_.push_back(label_inliers(matches_, truth_->target_from_source, threshold));
   }
 
@@ -172,11 +173,12 @@ std::string unit_key(const WorkUnit& unit, const InputHashes& inputs) {
                  hash_of(inputs, unit.pair.truth), unit_text(unit)});
 }
 
-CorrespondenceSet unit_matches(const WorkUnit& unit, const InputHashes& inputs, const ContentStore& store,
-                               const Mesh& source, const Mesh& target) {
-  const std::string source_hash = hash_of(inputs, unit.pair.source), target_hash = hash_of(inputs, unit.pair.target);
+CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
+  const WorkUnit& unit = work.unit;
+  const std::string source_hash = hash_of(work.inputs, unit.pair.source),
+                    target_hash = hash_of(work.inputs, unit.pair.target);
   const std::string key = key_of({"matches", source_hash, target_hash, matching_text(unit.matching)});
-  if (auto found = store.matches(key)) return std::move(*found);
+  if (auto found = work.store.matches(key)) return std::move(*found);
   source.validate("source");
   target.validate("target");
   const double resolution =
@@ -184,23 +186,24 @@ CorrespondenceSet unit_matches(const WorkUnit& unit, const InputHashes& inputs, 
   MatchSettings settings = unit.matching;
   settings.resolution = to_text(resolution);  // whatever rule it came from
   const auto describe = [&](const Mesh& mesh, const std::string& hash, bool is_shared) {
-    return is_shared ? shared_descriptors(mesh, hash, settings, store)
+    return is_shared ? shared_descriptors(mesh, hash, settings, work.store)
                      : describe_surface(mesh, resolution, unit.matching).descriptors;
   };
   const Descriptors on_source = describe(source, source_hash, unit.shares_source);
   const Descriptors on_target = describe(target, target_hash, unit.shares_target);
   CorrespondenceSet matches = match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching);
-  store.put(key, matches);
+  work.store.put(key, matches);
   return matches;
 }
 
-UnitResult evaluate_unit(const WorkUnit& unit, const InputHashes& inputs, const ContentStore& store,
-                         std::vector<FileContent>& files) {
+UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) {
   try {
-    PairStudy study(unit, inputs, store);
+    PairStudy study(work);
     UnitResult result = study.evaluate();
     study.add_files(files);
     return result;
+  } catch (const std::bad_alloc&) {
+    throw;  // says nothing about the pair
   } catch (const std::exception& error) {
     UnitResult failed;
     failed.failure = *error.what() ? one_line(error.what()) : "no reason given";

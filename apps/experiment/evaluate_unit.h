@@ -42,13 +42,18 @@ std::string hash_of(const InputHashes& inputs, const std::string& path);
 /// What the answer of a unit depends on, as the name of its file.
 std::string unit_key(const WorkUnit& unit, const InputHashes& inputs);
 
-/// The table of a unit, from the store or made and stored. Throws IoError or InvalidInput.
-CorrespondenceSet unit_matches(const WorkUnit& unit, const InputHashes& inputs, const ContentStore& store,
-                               const Mesh& source, const Mesh& target);
+/// A unit with what it is worked on with.
+struct UnitWork {
+  const WorkUnit& unit;
+  const InputHashes& inputs;
+  const ContentStore& store;
+};
 
-/// Matches, groups, scores and refines. Whatever fails is in the result. `files`: gets the files of selections and poses.
-UnitResult evaluate_unit(const WorkUnit& unit, const InputHashes& inputs, const ContentStore& store,
-                         std::vector<FileContent>& files);
+/// The table of a unit, from the store or made and stored. Throws IoError or InvalidInput.
+CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target);
+
+/// Matches, groups, scores and refines. Whatever fails is in the result, but for want of memory (std::bad_alloc). `files`: gets the files of selections and poses.
+UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files);
 
 /// As text, and back; what is no such text is absent.
 std::string unit_result_text(const UnitResult& result);

@@ -38,6 +38,19 @@ bool has_failed(const UnitResult& result) {
          std::any_of(result.tasks.begin(), result.tasks.end(), [](const TaskResult& task) { return !task.selected; });
 }
 
+/// Whether an answer has all that the unit asks for.
+bool fits(const UnitResult& result, const WorkUnit& unit) {
+  if (!result.failure.empty()) return true;
+  const std::size_t thresholds = result.has_truth ? unit.thresholds_pr.size() : 0;
+  const auto is_whole = [&](const TaskResult& task) { return task.correct.size() == (task.selected ? thresholds : 0); };
+  return result.tasks.size() == unit.tasks.size() && result.true_matches.size() == thresholds &&
+         result.frame_share.size() == thresholds && result.oracles.size() == thresholds &&
+         result.floor.has_value() == result.has_truth &&
+         std::all_of(result.tasks.begin(), result.tasks.end(), is_whole) &&
+         std::all_of(result.oracles.begin(), result.oracles.end(), is_whole) &&
+         (!result.floor || is_whole(*result.floor));
+}
+
 /// The units of a run on their way from work to files.
 class Runner {
  public:
@@ -85,18 +98,13 @@ class Runner {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return std::nullopt;
     std::optional<UnitResult> result = parse_unit_result(read_file(file));
-    if (!result || !result->failure.empty()) return result;
-    const std::size_t thresholds = result->has_truth ? unit.thresholds_pr.size() : 0;
-    const bool fits = result->tasks.size() == unit.tasks.size() && result->true_matches.size() == thresholds &&
-                      result->frame_share.size() == thresholds && result->oracles.size() == thresholds &&
-                      result->floor.has_value() == result->has_truth;
-    return fits ? result : std::nullopt;
+    return result && fits(*result, unit) ? result : std::nullopt;
   }
 
   /// The unit's own file comes last: where it is, the others are.
   UnitResult evaluate(const WorkUnit& unit) const {
     std::vector<FileContent> files;
-    UnitResult result = evaluate_unit(unit, inputs_, store_, files);
+    UnitResult result = evaluate_unit({unit, inputs_, store_}, files);
     for (FileContent& file : files) file.path = (folder_ / file.path).string();
     files.push_back({file_of(unit), unit_result_text(result)});
     write_files(files);

@@ -37,7 +37,7 @@ std::vector<Table> find_tables(const WorkList& list, const InputHashes& inputs, 
   const auto wanted = static_cast<std::size_t>(experiment.tables);
   for (const WorkUnit& unit : list.units) {
     const Mesh source = read_surface(unit.pair.source), target = read_surface(unit.pair.target);
-    tables.push_back({&unit, unit_matches(unit, inputs, store, source, target)});
+    tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target)});
     if (static_cast<std::size_t>(std::count_if(tables.begin(), tables.end(), is_enough)) == wanted) break;
   }
   std::stable_sort(tables.begin(), tables.end(), [&](const Table& a, const Table& b) {
@@ -140,7 +140,7 @@ CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::ui
 }
 
 std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
-                                    const std::function<void(const std::string& what, double share)>& observer) {
+                                    const std::function<void(const std::string& what)>& observer) {
   const Experiment& experiment = list.experiments.front();
   const InputHashes inputs = hash_inputs(list);
   const std::filesystem::path folder(settings.run);
@@ -148,14 +148,14 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
   const FolderLock lock(folder.string());
   check_same_run(folder.string(), list, inputs);
   const ContentStore store(settings.cache.empty() ? (folder / "cache").string() : settings.cache);
-  observer("matching", 0);
+  observer("matching");
   std::vector<StudyRecord> records;
   const auto& levels = experiment.info.levels;
   for (const Table& table : find_tables(list, inputs, store))
     for (std::size_t level = 0; level < levels.size(); ++level) {
       const auto count = static_cast<int>(levels[level].low);
       if (count > table.matches.size()) continue;
-      observer(levels[level].label + " matches", static_cast<double>(level) / static_cast<double>(levels.size()));
+      observer(levels[level].label + " matches");
       const std::string& pair = table.unit->pair.name;
       const CorrespondenceSet drawn =
           draw_rows(table.matches, count, derive_seed(experiment.seed, pair + "/" + levels[level].label));

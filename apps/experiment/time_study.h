@@ -24,7 +24,7 @@ struct TimeRow {
 /// have enough of them, else of those that have most; a size that none has is left out.
 /// Throws    IoError as run_study does, or if no pair has a table of any of the sizes.
 std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
-                                    const std::function<void(const std::string& what, double share)>& observer);
+                                    const std::function<void(const std::string& what)>& observer);
 
 /// So many rows of a table, drawn without repetition, in their order.
 CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed);

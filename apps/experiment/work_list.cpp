@@ -62,7 +62,7 @@ bool draws(const std::string& method) {
 
 /// Where the selections of a way to match and to group lie: the paper's way has a short name.
 std::string setting_label(const Experiment& experiment, const WorkUnit& unit, const StudyLevel& level) {
-  std::string text, usual;
+  std::string text;
   for (const Grouper& grouper : groupers())
     for (const auto& [name, value] : method_options(experiment, grouper.name, level))
       text += grouper.name + "." + name + "=" + value + "\n";
@@ -202,25 +202,32 @@ class Collector {
     const StudyLevel& level = experiment.info.levels[static_cast<std::size_t>(std::max(sample.level, 0))];
     sample.selection =
         "selections/" + unit.dataset + "/" + setting_label(experiment, unit, level) + "/" + unit.pair.name + ".csv";
-    for (const std::string& method : experiment.info.methods) add_tasks(experiment, method, level, unit, sample);
+    for (const std::string& method : experiment.info.methods)
+      for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name)) add_task(task, unit, sample);
     list_.samples.push_back(std::move(sample));
   }
 
-  static void add_tasks(const Experiment& experiment, const std::string& method, const StudyLevel& level,
-                        WorkUnit& unit, StudySample& sample) {
+  /// All repeats of a method that draws, one call of any other.
+  static std::vector<GroupingTask> tasks_of(const Experiment& experiment, const std::string& method,
+                                            const StudyLevel& level, const std::string& pair) {
     const bool is_random = draws(method);
+    std::vector<GroupingTask> tasks;
     for (int repeat = 0; repeat < (is_random ? experiment.repeats : 1); ++repeat) {
-      GroupingTask task{method, method_options(experiment, method, level), repeat};
+      tasks.push_back({method, method_options(experiment, method, level), repeat});
       if (is_random)
-        task.options["seed"] =
-            std::to_string(derive_seed(experiment.seed, unit.pair.name + "/" + method + "/" + std::to_string(repeat)));
-      const auto found = std::find(unit.tasks.begin(), unit.tasks.end(), task);
-      const int number = static_cast<int>(found - unit.tasks.begin());
-      if (found == unit.tasks.end()) unit.tasks.push_back(std::move(task));
-      sample.tasks.push_back(number);
-      std::vector<int>& shown = unit.selections[sample.selection];
-      if (repeat == 0 && std::find(shown.begin(), shown.end(), number) == shown.end()) shown.push_back(number);
+        tasks.back().options["seed"] =
+            std::to_string(derive_seed(experiment.seed, pair + "/" + method + "/" + std::to_string(repeat)));
     }
+    return tasks;
+  }
+
+  static void add_task(const GroupingTask& task, WorkUnit& unit, StudySample& sample) {
+    const auto found = std::find(unit.tasks.begin(), unit.tasks.end(), task);
+    const int number = static_cast<int>(found - unit.tasks.begin());
+    if (found == unit.tasks.end()) unit.tasks.push_back(task);
+    sample.tasks.push_back(number);
+    std::vector<int>& shown = unit.selections[sample.selection];
+    if (task.repeat == 0 && std::find(shown.begin(), shown.end(), number) == shown.end()) shown.push_back(number);
   }
 
   std::string data_folder_;
