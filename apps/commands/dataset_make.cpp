@@ -3,6 +3,8 @@
 #include "apps/commands/commands.h"
 #include "apps/dataset/make_b3r.h"
 #include "apps/dataset/make_default.h"
+#include "apps/dataset/make_u3m.h"
+#include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
 #include "apps/report.h"
 #include "apps/workers.h"
@@ -18,17 +20,31 @@ void add_seed(CLI::App& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "Seed of all that is random")->capture_default_str();
 }
 
+void add_models(CLI::App& command, std::string& models) {
+  command.add_option("--models", models, "Folder of the models: every mesh in it")->type_name("FOLDER")->required();
+}
+
+void add_noise(CLI::App& command, double& noise_pr) {
+  command.add_option("--noise-pr", noise_pr, "Deviation of the depth along each ray")->capture_default_str();
+}
+
+/// The options of a maker, and what they are filled from.
+template <class Options>
+struct MakeSettings {
+  std::string models;
+  Options options;
+  int threads = 0;
+
+  void resolve() {
+    options.models = mesh_files(models);
+    options.parallel = workers(threads);
+  }
+};
+
 void add_b3r(CLI::App& make, Action& action) {
-  struct Settings {
-    std::string models;
-    MakeB3rOptions options;
-    int threads = 0;
-  };
   auto* command = make.add_subcommand("b3r", "Retrieval: moved copies of models at 9 levels of noise and 9 of density");
-  auto settings = std::make_shared<Settings>();
-  command->add_option("--models", settings->models, "Folder of the models: every mesh in it")
-      ->type_name("FOLDER")
-      ->required();
+  auto settings = std::make_shared<MakeSettings<MakeB3rOptions>>();
+  add_models(*command, settings->models);
   add_output(*command, settings->options.output);
   add_seed(*command, settings->options.seed);
   command->add_option("--scenes-per-model", settings->options.scenes_per_model, "Moved copies of each model")
@@ -40,11 +56,63 @@ void add_b3r(CLI::App& make, Action& action) {
       "Example:\n  corral dataset make b3r --models meshes -o data/b3r --scenes-per-model 2");
   command->callback([settings, &action] {
     action = [settings]() -> int {
-      MakeB3rOptions& options = settings->options;
-      options.models = mesh_files(settings->models);
-      options.parallel = workers(settings->threads);
+      settings->resolve();
+      const MakeB3rOptions& options = settings->options;
       Progress progress(static_cast<double>(options.models.size()) * options.scenes_per_model);
       make_b3r(options, progress);
+      return kOk;
+    };
+  });
+}
+
+void add_u3or(CLI::App& make, Action& action) {
+  auto* command = make.add_subcommand("u3or", "Recognition: heaps of models seen by a virtual range scanner");
+  auto settings = std::make_shared<MakeSettings<MakeU3orOptions>>();
+  add_models(*command, settings->models);
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  command->add_option("--scenes", settings->options.scenes, "How many heaps")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_noise(*command, settings->options.noise_pr);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "4 or 5 models in a scene; truth, occlusion and clutter are exact. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 12");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      settings->resolve();
+      VisibilityCounts counts;
+      {
+        Progress progress(3.0 * settings->options.scenes);
+        counts = make_u3or(settings->options, progress);
+      }
+      say(to_text(counts));
+      return kOk;
+    };
+  });
+}
+
+void add_u3m(CLI::App& make, Action& action) {
+  auto* command = make.add_subcommand("u3m", "Registration: models seen from all around by a virtual range scanner");
+  auto settings = std::make_shared<MakeSettings<MakeU3mOptions>>();
+  add_models(*command, settings->models);
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  command->add_option("--views", settings->options.views, "Views of each model")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  add_noise(*command, settings->options.noise_pr);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Kept are pairs of views that overlap by 30 to 90 %; their truth is exact. Interrupted, the same command goes "
+      "on.\n"
+      "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 8");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      settings->resolve();
+      Progress progress(static_cast<double>(settings->options.models.size()));
+      make_u3m(settings->options, progress);
       return kOk;
     };
   });
@@ -85,6 +153,8 @@ void add_dataset_make(CLI::App& dataset, Action& action) {
   auto* make = dataset.add_subcommand("make", "A new set from meshes, with exact truth");
   make->require_subcommand(1);
   add_b3r(*make, action);
+  add_u3or(*make, action);
+  add_u3m(*make, action);
   add_default(*make, action);
 }
 

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "apps/dataset/make_b3r.h"
+#include "apps/dataset/make_u3m.h"
+#include "apps/dataset/make_u3or.h"
 #include "apps/dataset/recognition_pairs.h"
 #include "apps/embedded_files.h"
 #include "io/toml_file.h"
@@ -28,15 +30,37 @@ std::string package_file(const std::string& folder, const std::string& name, con
   return path;
 }
 
-MakeB3rOptions retrieval(const MakeDefaultOptions& options) {
-  const TomlTable table = plan().table("b3r").value();
-  MakeB3rOptions made;
-  for (const std::string& name : table.texts("models"))
-    made.models.push_back(package_file(options.meshes, name, "libcgal-demo"));
-  made.output = inside(options.output, "b3r");
+/// What all makers take, for the sub-folder that is a table of the plan too.
+template <class Options>
+Options common(const MakeDefaultOptions& options, const std::string& name) {
+  Options made;
+  for (const std::string& model : plan().table(name).value().texts("models"))
+    made.models.push_back(package_file(options.meshes, model, "libcgal-demo"));
+  made.output = inside(options.output, name);
   made.seed = options.seed;
-  made.scenes_per_model = static_cast<int>(table.integer("scenes_per_model").value());
   made.parallel = options.parallel;
+  return made;
+}
+
+int count(const std::string& table, const std::string& key) {
+  return static_cast<int>(plan().table(table).value().integer(key).value());
+}
+
+MakeB3rOptions retrieval(const MakeDefaultOptions& options) {
+  auto made = common<MakeB3rOptions>(options, "b3r");
+  made.scenes_per_model = count("b3r", "scenes_per_model");
+  return made;
+}
+
+MakeU3orOptions recognition(const MakeDefaultOptions& options) {
+  auto made = common<MakeU3orOptions>(options, "u3or");
+  made.scenes = count("u3or", "scenes");
+  return made;
+}
+
+MakeU3mOptions registration(const MakeDefaultOptions& options) {
+  auto made = common<MakeU3mOptions>(options, "u3m");
+  made.views = count("u3m", "views");
   return made;
 }
 
@@ -67,13 +91,15 @@ void make_real_recognition(const std::vector<PublishedInstance>& instances, cons
 
 double default_steps(const MakeDefaultOptions& options) {
   const MakeB3rOptions b3r = retrieval(options);
-  return static_cast<double>(b3r.models.size()) * b3r.scenes_per_model +
-         static_cast<double>(real_instances(options).size());
+  return static_cast<double>(b3r.models.size()) * b3r.scenes_per_model + 3.0 * recognition(options).scenes +
+         static_cast<double>(registration(options).models.size() + real_instances(options).size());
 }
 
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
   const auto instances = real_instances(options);  // what is missing is said before the work
   make_b3r(retrieval(options), progress);
+  make_u3or(recognition(options), progress);
+  make_u3m(registration(options), progress);
   if (!instances.empty()) make_real_recognition(instances, options, progress);
 }
 
