@@ -3,6 +3,8 @@
 #include "apps/commands/commands.h"
 #include "apps/dataset/make_b3r.h"
 #include "apps/dataset/make_default.h"
+#include "apps/dataset/make_u3m.h"
+#include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
 #include "apps/report.h"
 #include "apps/workers.h"
@@ -50,6 +52,84 @@ void add_b3r(CLI::App& make, Action& action) {
   });
 }
 
+void add_noise(CLI::App& command, double& noise_pr) {
+  command.add_option("--noise-pr", noise_pr, "Deviation of normal noise along each ray of the scanner")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+}
+
+void add_u3or(CLI::App& make, Action& action) {
+  struct Settings {
+    std::string models;
+    MakeU3orOptions options;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("u3or", "Recognition: heaps of models seen by a virtual range scanner");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--models", settings->models, "Folder of the models: every mesh in it, 5 or more")
+      ->type_name("FOLDER")
+      ->required();
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  command->add_option("--scenes", settings->options.scenes, "Scenes, of 4 and 5 models by turns")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  add_noise(*command, settings->options.noise_pr);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Scenes are chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 %; how far they do is "
+      "said\n"
+      "in the end. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 20");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      MakeU3orOptions& options = settings->options;
+      options.models = mesh_files(settings->models);
+      options.parallel = workers(settings->threads);
+      VisibilityCounts counts;
+      {
+        Progress progress(3.0 * options.scenes);
+        counts = make_u3or(options, progress);
+      }
+      say(to_text(counts));
+      return kOk;
+    };
+  });
+}
+
+void add_u3m(CLI::App& make, Action& action) {
+  struct Settings {
+    std::string models;
+    MakeU3mOptions options;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("u3m", "Registration: models seen from all around by a virtual range scanner");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--models", settings->models, "Folder of the models: every mesh in it")
+      ->type_name("FOLDER")
+      ->required();
+  add_output(*command, settings->options.output);
+  add_seed(*command, settings->options.seed);
+  command->add_option("--views", settings->options.views, "Views of each model")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  add_noise(*command, settings->options.noise_pr);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Pairs are the views that overlap by 30 .. 90 %. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 12");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      MakeU3mOptions& options = settings->options;
+      options.models = mesh_files(settings->models);
+      options.parallel = workers(settings->threads);
+      Progress progress(static_cast<double>(options.models.size()));
+      make_u3m(options, progress);
+      return kOk;
+    };
+  });
+}
+
 void add_default(CLI::App& make, Action& action) {
   struct Settings {
     MakeDefaultOptions options;
@@ -85,6 +165,8 @@ void add_dataset_make(CLI::App& dataset, Action& action) {
   auto* make = dataset.add_subcommand("make", "A new set from meshes, with exact truth");
   make->require_subcommand(1);
   add_b3r(*make, action);
+  add_u3or(*make, action);
+  add_u3m(*make, action);
   add_default(*make, action);
 }
 

@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "apps/dataset/make_b3r.h"
+#include "apps/dataset/make_u3m.h"
+#include "apps/dataset/make_u3or.h"
 #include "apps/dataset/recognition_pairs.h"
 #include "apps/embedded_files.h"
 #include "io/toml_file.h"
@@ -28,15 +30,37 @@ std::string package_file(const std::string& folder, const std::string& name, con
   return path;
 }
 
-MakeB3rOptions retrieval(const MakeDefaultOptions& options) {
-  const TomlTable table = plan().table("b3r").value();
-  MakeB3rOptions made;
-  for (const std::string& name : table.texts("models"))
+/// What all makers have in common; `set` is their table of the plan and their folder.
+template <class Made>
+Made made_set(const MakeDefaultOptions& options, const std::string& set) {
+  Made made;
+  for (const std::string& name : plan().table(set).value().texts("models"))
     made.models.push_back(package_file(options.meshes, name, "libcgal-demo"));
-  made.output = inside(options.output, "b3r");
+  made.output = inside(options.output, set);
   made.seed = options.seed;
-  made.scenes_per_model = static_cast<int>(table.integer("scenes_per_model").value());
   made.parallel = options.parallel;
+  return made;
+}
+
+int planned(const std::string& set, const std::string& count) {
+  return static_cast<int>(plan().table(set).value().integer(count).value());
+}
+
+MakeB3rOptions retrieval(const MakeDefaultOptions& options) {
+  auto made = made_set<MakeB3rOptions>(options, "b3r");
+  made.scenes_per_model = planned("b3r", "scenes_per_model");
+  return made;
+}
+
+MakeU3orOptions recognition(const MakeDefaultOptions& options) {
+  auto made = made_set<MakeU3orOptions>(options, "u3or");
+  made.scenes = planned("u3or", "scenes");
+  return made;
+}
+
+MakeU3mOptions registration(const MakeDefaultOptions& options) {
+  auto made = made_set<MakeU3mOptions>(options, "u3m");
+  made.views = planned("u3m", "views");
   return made;
 }
 
@@ -67,13 +91,17 @@ void make_real_recognition(const std::vector<PublishedInstance>& instances, cons
 
 double default_steps(const MakeDefaultOptions& options) {
   const MakeB3rOptions b3r = retrieval(options);
-  return static_cast<double>(b3r.models.size()) * b3r.scenes_per_model +
-         static_cast<double>(real_instances(options).size());
+  return static_cast<double>(b3r.models.size()) * b3r.scenes_per_model + 3.0 * recognition(options).scenes +
+         static_cast<double>(registration(options).models.size()) + static_cast<double>(real_instances(options).size());
 }
 
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
   const auto instances = real_instances(options);  // what is missing is said before the work
+  const MakeU3orOptions u3or = recognition(options);
+  const MakeU3mOptions u3m = registration(options);
   make_b3r(retrieval(options), progress);
+  make_u3or(u3or, progress);
+  make_u3m(u3m, progress);
   if (!instances.empty()) make_real_recognition(instances, options, progress);
 }
 
