@@ -4,13 +4,13 @@
 # adds the function `const EmbeddedFiles& embedded_<name>()` of apps/embedded_files.h to the target: the text of each file by its
 # name without folders. A changed file is embedded anew. Files are text; run as a script, this writes the source.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
-  set(CORRAL_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_FILE})
   function(corral_embed target name)
+    set(script ${CMAKE_CURRENT_FUNCTION_LIST_FILE})
     set(files ${ARGN})
     list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name}.cpp)
-    add_custom_command(OUTPUT ${source} DEPENDS ${files} ${CORRAL_EMBED_SCRIPT} VERBATIM
-      COMMAND ${CMAKE_COMMAND} -D NAME=${name} -D SOURCE=${source} -D "FILES=${files}" -P ${CORRAL_EMBED_SCRIPT})
+    add_custom_command(OUTPUT ${source} DEPENDS ${files} ${script} VERBATIM
+      COMMAND ${CMAKE_COMMAND} -D NAME=${name} -D SOURCE=${source} -D "FILES=${files}" -P ${script})
     target_sources(${target} PRIVATE ${source})
   endfunction()
   return()

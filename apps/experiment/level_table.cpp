@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "apps/experiment/statistics.h"
 #include "io/line_reader.h"
 #include "kernel/error.h"
 
@@ -204,13 +205,19 @@ double mean_of(const RowNumbers& column, const std::vector<int>& rows) {
   return seen > 0 ? sum / seen : kAbsent;
 }
 
+int present_in(const RowNumbers& column) {
+  return static_cast<int>(std::count_if(column.begin(), column.end(), [](double value) { return !std::isnan(value); }));
+}
+
+bool is_within(const StudyLevel& level, double low, double high) {
+  constexpr double kRounding = 1e-9;
+  return level.low >= low - kRounding && level.high <= high + kRounding;
+}
+
 double median_of(RowNumbers values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }),
                values.end());
-  if (values.empty()) return kAbsent;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+  return quantile_of(std::move(values), 0.5);
 }
 
 double pooled_precision(const LevelTable& level, const std::string& method) {

@@ -50,7 +50,11 @@ std::vector<ExperimentTable> experiment_tables(const RunFolder& run);
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.
 double mean_of(const RowNumbers& column);
 double mean_of(const RowNumbers& column, const std::vector<int>& rows);
-double median_of(RowNumbers values);  ///< likewise
+int present_in(const RowNumbers& column);  ///< how many numbers there are
+double median_of(RowNumbers values);       ///< likewise
+
+/// Whether a level lies in low .. high, ends included; levels are decimal numbers, so ends may be off by their rounding.
+bool is_within(const StudyLevel& level, double low, double high);
 
 /// Pooled over the rows that count (micro): all that is right among all that was selected, or among all true matches.
 double pooled_precision(const LevelTable& level, const std::string& method);

@@ -23,7 +23,7 @@ double chi_square_tail(double value, int freedom) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), value));
 }
 
-/// Between the order statistics, so that 0 is the least and 1 the largest.
+/// As quantile_of.
 double quantile_of_sorted(const std::vector<double>& sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
@@ -100,6 +100,12 @@ MeanInterval bootstrap_mean(const std::vector<double>& values, std::uint64_t see
   const double z = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
   return {mean, quantile_of_sorted(means, bca_level(-z, bias, acceleration)),
           quantile_of_sorted(means, bca_level(z, bias, acceleration))};
+}
+
+double quantile_of(std::vector<double> values, double p) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  return quantile_of_sorted(values, p);
 }
 
 std::vector<double> shared_ranks(const std::vector<double>& values) {

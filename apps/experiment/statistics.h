@@ -57,6 +57,9 @@ struct RankComparison {
 /// that are no numbers.
 RankComparison compare_ranks(const std::vector<std::vector<double>>& scores);
 
+/// Between the order statistics, so that 0 gives the least value and 1 the largest; NaN without values.
+double quantile_of(std::vector<double> values, double p);
+
 /// Ranks from 1 in ascending order; equal values share the mean of theirs.
 std::vector<double> shared_ranks(const std::vector<double>& values);
 

@@ -147,6 +147,9 @@ TEST(Claims, ThresholdsRaisePrecisionOnTheSamePairs) {
     else if (record.pair == "pair0")
       record.precision = 0;
   EXPECT_EQ(judge({run}).at("C38").verdict, Verdict::Holds);
+  const auto is_lost = [](const StudyRecord& record) { return record.level == "2" && record.pair == "pair2"; };
+  run.records.erase(std::remove_if(run.records.begin(), run.records.end(), is_lost), run.records.end());
+  EXPECT_NEAR(*judge({run}).at("C38").margin, 0.04, 1e-12);  // of the four pairs left and the one of 0
   for (StudyRecord& record : run.records)
     if (record.level == "3" && record.method == "gc") *record.precision = 0.04;
   EXPECT_EQ(judge({run}).at("C38").verdict, Verdict::Fails);
@@ -209,6 +212,41 @@ TEST(Claims, OfManyPartsFailWithOne) {
   EXPECT_EQ(verdicts.at("C69").verdict, Verdict::Undecidable);
   const auto worse = [](const std::string&, double) { return Scores{0.9, 0.9}; };
   EXPECT_EQ(judge({run_with("clutter", {bin(65, 70)}, worse)}).at("C69").verdict, Verdict::Fails);  // whatever the rest
+}
+
+TEST(Claims, LookAtSeveralExperiments) {
+  RunFolder run;
+  const auto add = [&](const std::string& name, double inlier_ratio, const std::map<std::string, double>& scores) {
+    testing::add_experiment(run, {name,
+                                  name,
+                                  {bin(0, 0.1), bin(70, 75)},
+                                  6,
+                                  false,
+                                  inlier_ratio,
+                                  [&](const std::string& method, const StudyLevel&, int) {
+                                    const double score = scores.at(method);
+                                    return Scores{score, score};
+                                  }});
+  };
+  const std::map<std::string, double> good = {{"ss", 0.8},  {"nnsr", 0.8},  {"ransac", 0.95}, {"st", 0.9},
+                                              {"gc", 0.91}, {"hough", 0.7}, {"si", 0.6}};
+  const std::map<std::string, double> poor = {{"ss", 0.1},  {"nnsr", 0.2},  {"ransac", 0.50}, {"st", 0.25},
+                                              {"gc", 0.51}, {"hough", 0.5}, {"si", 0.3}};
+  add("noise", 0.6, good);
+  add("density", 0.6, good);
+  for (const char* name : {"clutter", "occlusion", "overlap"}) add(name, 0.05, poor);
+  const Verdicts verdicts = judge({run});
+  EXPECT_NEAR(*verdicts.at("C17").margin, 0.2 - 0.01, 1e-12);  // 3DHV loses least
+  EXPECT_NEAR(*verdicts.at("C60").margin, 0.25, 1e-12);        // NNSR loses 0.75, the median is SI's 0.5
+  EXPECT_EQ(verdicts.at("C60").verdict, Verdict::Holds);
+  EXPECT_NEAR(verdicts.at("C62").parts[0].margin, 0.9 - 0.85, 1e-12);
+  EXPECT_NEAR(verdicts.at("C62").parts[1].margin, 0.3 - 0.25, 1e-12);
+  // RANSAC is beaten nowhere, as GC's lead of 0.01 is no more than tau: 10 cells; GC and 3DHV tie with it in 6.
+  EXPECT_EQ(*verdicts.at("C64").margin, 4);
+  EXPECT_NEAR(verdicts.at("C66").parts[1].margin, 4 - (6 * 4 + 1 * 6) / 10.0, 1e-12);  // sixth on B3R, first elsewhere
+  EXPECT_NEAR(*verdicts.at("C8").margin, 0.3, 1e-12);  // the same order: a correlation of 1
+  EXPECT_EQ(verdicts.at("D6").verdict, Verdict::Holds);
+  EXPECT_EQ(*verdicts.at("D1").margin, -300);  // 24 pairs
 }
 
 TEST(Claims, PutRunsTogether) {

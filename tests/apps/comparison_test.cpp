@@ -67,7 +67,7 @@ TEST(Comparison, TakesAPairAtSeveralLevelsAsOne) {
   const MethodComparison comparison = compare_methods(experiment_tables(run_of(true)).at(0), Metric::Precision);
   EXPECT_EQ(comparison.pairs, 12);
   EXPECT_NEAR(find(comparison, "nnsr", "st").difference.mean, 0, 1e-12);  // above at one level and below at the other
-  EXPECT_NEAR(find(comparison, "st", "gc").p, 2 / 4096.0, 1e-2);
+  EXPECT_LT(find(comparison, "st", "gc").p, 0.01);
 }
 
 TEST(Comparison, TestsSuccessesByMcNemar) {

@@ -159,6 +159,19 @@ TEST(Bootstrap, IsDeterministicAndHoldsItsMean) {
   EXPECT_THROW(bootstrap_mean({}, 1), InvalidInput);
 }
 
+TEST(Bootstrap, LeansToTheLongTail) {
+  const Values skewed = {0.02, 0.03, 0.01, 0.05, 0.04, 0.02, 0.06, 0.03, 0.5, 0.9};
+  const MeanInterval interval = bootstrap_mean(skewed, 1);
+  // the same formula in numpy with 1,000,000 resamples
+  EXPECT_NEAR(interval.low, 0.031, 0.005);
+  EXPECT_NEAR(interval.high, 0.509, 0.05);
+  Values mirrored;
+  for (const double value : skewed) mirrored.push_back(-value);
+  const MeanInterval other = bootstrap_mean(mirrored, 1);
+  EXPECT_NEAR(other.low, -interval.high, 1e-12);  // the same draws, mirrored
+  EXPECT_NEAR(other.high, -interval.low, 1e-12);
+}
+
 /// A variable in [0, 1] with density proportional to x^(a-1) (1-x)^(b-1), for whole a and b: an order statistic.
 double beta(RandomStream& stream, int a, int b) {
   Values draws;
