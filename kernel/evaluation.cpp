@@ -83,4 +83,31 @@ std::optional<PointError> point_error(const RigidTransform& estimate, const Rigi
   return PointError{std::sqrt(distances.squaredNorm() / count), distances.sum() / count};
 }
 
+const std::vector<double>& success_thresholds_pr() {
+  static const std::vector<double> thresholds{0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0};
+  return thresholds;
+}
+
+std::vector<double> success_curve(const std::vector<std::optional<double>>& rmse_pr,
+                                  const std::vector<double>& thresholds_pr) {
+  if (rmse_pr.empty()) throw InvalidInput("success_curve", "rmse_pr", "0 pairs", "at least 1");
+  std::vector<double> shares;
+  for (const double threshold : thresholds_pr) {
+    const auto registered =
+        std::count_if(rmse_pr.begin(), rmse_pr.end(), [&](const auto& error) { return error && *error <= threshold; });
+    shares.push_back(static_cast<double>(registered) / static_cast<double>(rmse_pr.size()));
+  }
+  return shares;
+}
+
+double success_area(const std::vector<std::optional<double>>& rmse_pr) {
+  std::vector<double> thresholds{0};
+  thresholds.insert(thresholds.end(), success_thresholds_pr().begin(), success_thresholds_pr().end());
+  const std::vector<double> shares = success_curve(rmse_pr, thresholds);
+  double area = 0;
+  for (std::size_t i = 1; i < shares.size(); ++i)
+    area += (thresholds[i] - thresholds[i - 1]) * (shares[i - 1] + shares[i]) / 2;
+  return area / thresholds.back();
+}
+
 }  // namespace corral

@@ -57,4 +57,19 @@ struct PointError {
 std::optional<PointError> point_error(const RigidTransform& estimate, const RigidTransform& truth, const Points& points,
                                       double resolution);
 
+/// The thresholds of the field's success curves: 0.5, 1.0 .. 5.0 pr. A pair is registered if its error is at most the last.
+const std::vector<double>& success_thresholds_pr();
+
+/// One point of the success curve per threshold: the share of pairs whose error is at most the threshold (inclusive). An
+/// absent error (no pose) or NaN is a failure at every threshold.
+///
+/// Source    U3M's success curves; errors are PointError::mean_pr, as the published ones are.
+/// Throws    InvalidInput if there is no pair: a share of none is undefined.
+std::vector<double> success_curve(const std::vector<std::optional<double>>& rmse_pr,
+                                  const std::vector<double>& thresholds_pr = success_thresholds_pr());
+
+/// The area under the success curve, 0 (no pair registered) .. 1 (every error is 0): the trapezoid rule on its points at
+/// 0 and at success_thresholds_pr(), over the 5 pr that they span. Throws as success_curve.
+double success_area(const std::vector<std::optional<double>>& rmse_pr);
+
 }  // namespace corral
