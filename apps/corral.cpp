@@ -52,6 +52,8 @@ int main(int argc, char** argv) {
   corral::add_groupers(app, action);
   corral::add_perturb(app, action);
   corral::add_triangulate(app, action);
+  corral::add_draw(app, action);
+  corral::add_report(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -31,6 +31,8 @@ void add_run(CLI::App& app, Action& action);
 void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
+void add_draw(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 
 /// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
 Mesh read_surface(const std::string& path);
