@@ -57,6 +57,8 @@ int main(int argc, char** argv) {
   corral::add_dataset(app, action);
   corral::add_compare(app, action);
   corral::add_claims(app, action);
+  corral::add_draw(app, action);
+  corral::add_report(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

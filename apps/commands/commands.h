@@ -39,6 +39,8 @@ void add_dataset_make(CLI::App& dataset, Action& action);
 void add_dataset_import(CLI::App& dataset, Action& action);
 void add_claims(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
+void add_draw(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);

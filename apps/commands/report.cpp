@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// corral report: the figures, tables and pictures of some runs.
+#include "apps/report.h"
+
+#include <filesystem>
+
+#include "apps/commands/commands.h"
+#include "apps/experiment/pair_gallery.h"
+#include "apps/experiment/study_figures.h"
+#include "apps/figure/gnuplot.h"
+#include "apps/progress.h"
+#include "io/file.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::vector<std::string> runs, pairs;
+  std::string output;
+};
+
+/// Data, tables and scripts; the names of the scripts.
+std::vector<std::string> write_figures(const StudyFigures& figures, const std::string& folder) {
+  std::vector<FileContent> files;
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, const std::string& csv, const std::string& script) {
+    files.push_back({folder + name + ".csv", csv});
+    files.push_back({folder + name + ".gp", script});
+    names.push_back(name);
+  };
+  for (const Panel& panel : figures.panels) {
+    add(panel.name, panel_csv(panel), panel_script(panel));
+    files.push_back({folder + panel.name + ".tex", panel_latex(panel)});
+  }
+  for (const BoxPanel& panel : figures.boxes) add(panel.name, box_csv(panel), box_script(panel));
+  write_files(files);
+  return names;
+}
+
+/// False if one of the pairs cannot be drawn, and says why.
+bool write_pictures(const GalleryPair& pair, const std::string& folder) {
+  try {
+    std::vector<FileContent> pictures = draw_gallery_pair(pair);
+    for (FileContent& picture : pictures) picture.path = folder + picture.path;
+    write_files(pictures);
+    return true;
+  } catch (const IoError& error) {
+    say("corral report: no pictures of " + pair.name() + ": " + error.what());
+    return false;
+  }
+}
+
+int report(const Settings& settings) {
+  std::vector<RunFolder> runs;
+  for (const std::string& run : settings.runs) runs.push_back(read_run(run));
+  const StudyFigures figures = study_figures(runs);
+  const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
+  const std::string folder = settings.output + "/", pictures = folder + "pairs/";
+  make_folder(gallery.empty() ? folder : pictures);
+  const std::vector<std::string> names = write_figures(figures, folder);
+  Progress progress(static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
+  bool is_whole = true;
+  for (const GalleryPair& pair : gallery) {
+    progress.begin("pictures of " + pair.name(), 40);
+    is_whole = write_pictures(pair, pictures) && is_whole;
+  }
+  for (const std::string& name : names) {
+    progress.begin(name);
+    run_gnuplot(settings.output, name);
+  }
+  return is_whole ? kOk : kPartial;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("report", "Figures, tables and pictures of what 'corral evaluate' found");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("runs", settings->runs, "Folders that 'corral evaluate' made")->type_name("RUN")->required();
+  command->add_option("-o,--output", settings->output, "Folder for the report")->type_name("FOLDER")->required();
+  command
+      ->add_option(
+          "--pairs", settings->pairs,
+          "Pairs to draw, 'pair' or 'dataset/pair', with commas between them (default: of each data set the one "
+          "whose share of right matches is in the middle)")
+      ->type_name("NAMES")
+      ->delimiter(',');
+  command->footer(
+      "Every figure is <experiment>-<dataset>-<measure>.pdf and .svg, with its numbers (.csv), a table (.tex) and the "
+      "script "
+      "that drew\nit (.gp: change what you like and run gnuplot on it). Pictures of pairs are in pairs/.\n"
+      "Examples:\n  corral report build/run -o report\n  corral report run-b3r run-time --pairs b3r/bunny-0.25 -o "
+      "report");
+  command->callback([settings, &action] { action = [settings] { return report(*settings); }; });
+}
+
+}  // namespace corral
