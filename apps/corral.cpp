@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   corral::add_groupers(app, action);
   corral::add_perturb(app, action);
   corral::add_triangulate(app, action);
+  corral::add_align(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

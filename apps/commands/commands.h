@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "apps/match_pair.h"
 #include "apps/read_surface.h"
 #include "grouping/registry.h"
+#include "kernel/surface/view_triangulation.h"
 
 namespace corral {
 
@@ -32,11 +34,20 @@ void add_run(CLI::App& app, Action& action);
 void add_groupers(CLI::App& app, Action& action);
 void add_perturb(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
+void add_align(CLI::App& app, Action& action);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);  ///< throws UsageError
 void check_threshold(double threshold_pr);        ///< throws UsageError
+
+/// --sensor and --direction, as typed.
+struct SensorSettings {
+  std::string sensor = "0,0,0";
+  std::optional<std::string> direction;
+};
+void add_sensor_options(CLI::App& command, SensorSettings& settings);
+ViewOptions view_options(const SensorSettings& settings);  ///< throws UsageError
 
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);
