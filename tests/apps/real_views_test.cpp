@@ -51,6 +51,11 @@ struct RealViews {
   RigidTransform between(int a, int b) const {
     return world_from_view[std::size_t(b)].inverse() * world_from_view[std::size_t(a)];
   }
+  /// Mean distance of the vertices of a view from where the published alignment has them in the other, pr.
+  double off_pr(int a, int b, const RigidTransform& b_from_a, double resolution) const {
+    const Points& points = meshes[std::size_t(a)].vertices;
+    return (b_from_a.apply(points) - between(a, b).apply(points)).rowwise().norm().mean() / resolution;
+  }
   /// Mean distance of all vertices from where the published alignment has them, pr, in the frame that suits best.
   double error_pr(const AlignedViews& aligned, double resolution) const {
     Eigen::Index count = 0, row = 0;
@@ -88,7 +93,8 @@ RealViews bunny() {
   return views;
 }
 
-/// Poses that the surfaces themselves settle in, of every pair that shares a quarter; then a share of them is made wrong:
+/// Poses that the surfaces themselves settle in, of every pair that shares a quarter (but for those that slide: they are
+/// wrong to begin with); then a share of them is made wrong:
 /// any rotation about the middle of the view.
 void expect_wrong_poses_named(const RealViews& real, double most_error_pr) {
   const ViewSet set(real.meshes, real.sensor, workers(0));
@@ -96,7 +102,8 @@ void expect_wrong_poses_named(const RealViews& real, double most_error_pr) {
   for (int a = 0; a < real.size(); ++a)
     for (int b = a + 1; b < real.size(); ++b)
       if (set.agreement(a, b, real.between(a, b)).overlap >= 0.25)
-        if (const auto pose = set.lay(a, b, real.between(a, b))) poses.push_back({a, b, *pose, 1});
+        if (const auto pose = set.lay(a, b, real.between(a, b)))
+          if (real.off_pr(a, b, *pose, set.resolution()) < 2) poses.push_back({a, b, *pose, 1});
   const auto wrong = static_cast<std::size_t>(std::lround(0.2 * double(poses.size())));
   ASSERT_GE(wrong, 4U);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
