@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   corral::add_claims(app, action);
   corral::add_draw(app, action);
   corral::add_report(app, action);
+  corral::add_align(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,9 +13,10 @@ namespace corral {
 namespace {
 
 constexpr double kOverlapPr = 2;
-constexpr double kCellPr = 2;     // of the depth images
-constexpr double kInFrontPr = 5;  // what noise and a pose that is nearly right do not reach
-constexpr double kFarPr = 1e5;    // a sensor beyond is as good as infinitely far away
+constexpr double kCellPr = 2;              // of the depth images
+constexpr double kInFrontPr = 5;           // what noise and a pose that is nearly right do not reach
+constexpr double kHopelessInFront = 0.06;  // the finest level, most of the work, is not for poses that are worse
+constexpr double kFarPr = 1e5;             // a sensor beyond is as good as infinitely far away
 
 }  // namespace
 
@@ -75,7 +76,12 @@ std::optional<RigidTransform> ViewSet::lay(int a, int b, const RigidTransform& s
   const SurfacePair surfaces{
       mesh(a).vertices, mesh(b).vertices, at(b).normals, resolution_,
       [&](const Points& queries, double limit) -> const Indices& { return tracker.nearest(queries, limit); }};
-  return refine_surface(surfaces, start).target_from_source;
+  SurfaceOptions coarse, fine;
+  fine.levels = {coarse.levels.back()};
+  coarse.levels.pop_back();
+  const auto near = refine_surface(surfaces, start, coarse).target_from_source;
+  if (!near || share_in_front(a, b, *near) > kHopelessInFront) return std::nullopt;
+  return refine_surface(surfaces, *near, fine).target_from_source;
 }
 
 }  // namespace corral

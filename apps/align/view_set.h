@@ -35,7 +35,8 @@ class ViewSet {
   double share_in_front(int a, int b, const RigidTransform& b_from_a) const;
   ViewAgreement agreement(int a, int b, const RigidTransform& b_from_a) const;
 
-  /// Lays the whole surface of a on that of b, from coarse to fine; absent where refine_surface gives no pose.
+  /// Lays the whole surface of a on that of b, from coarse to fine; absent where refine_surface gives no pose, or the
+  /// views contradict what its coarse levels give.
   std::optional<RigidTransform> lay(int a, int b, const RigidTransform& start) const;
 
  private:
