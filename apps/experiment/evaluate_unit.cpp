@@ -6,6 +6,7 @@
 
 #include "apps/dense_refinement.h"
 #include "apps/evaluate_pair.h"
+#include "apps/experiment/build_info.h"
 #include "apps/experiment/run_folder.h"
 #include "apps/read_surface.h"
 #include "io/transform_file.h"
@@ -16,11 +17,12 @@
 namespace corral {
 namespace {
 
-/// Part of every key: what is stored is made anew when the program would make something else of the same input.
+/// Part of every key, to be changed with whatever makes something else of the same input; a new version of the program makes
+/// everything anew too.
 constexpr char kFormat[] = "corral study 1";
 
 std::string key_of(const std::vector<std::string>& parts) {
-  std::string text = kFormat;
+  std::string text = kFormat + ("\n" + build_info().version);
   for (const std::string& part : parts) text += "\n" + part;
   return content_hash(text);
 }

@@ -175,9 +175,10 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
         settings.run, "",
         "no pair has as many matches as the smallest size, expected smaller levels or a smaller keypoint_radius_pr");
   const std::vector<TimeRow> rows = time_rows(experiment, records);
+  const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
   write_files({{(folder / "records.csv").string(), records_text(records)},
                {(folder / "time.csv").string(), time_text(rows)},
-               {(folder / "manifest.json").string(), manifest_text(list, inputs, {}, settings.command_line)}});
+               {(folder / "manifest.json").string(), manifest_text(list, inputs, results, settings.command_line)}});
   return rows;
 }
 

@@ -265,6 +265,7 @@ TEST_F(Evaluate, TimesAreTakenAlone) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const CsvTable times = read_csv(place_ / "run/time.csv");
   EXPECT_EQ(times.rows.size(), 14u);  // no table has 100000 rows
+  EXPECT_TRUE(nlohmann::json::parse(place_.text("run/manifest.json"))["is_finished"]);
   const RunFolder run = read_run(place_ / "run");
   EXPECT_EQ(run.records.size(), 28u);
   for (const StudyRecord& record : run.records) {
@@ -281,6 +282,28 @@ TEST_F(Evaluate, SaysWhatIsWrongWithTheCall) {
   EXPECT_THAT(place_.corral("evaluate overlap --data data -o run").err, HasSubstr("it has b3r"));
   EXPECT_FALSE(std::filesystem::exists(place_ / "run"));
   EXPECT_THAT(place_.corral("evaluate --help").out, AllOf(HasSubstr("tuning-spectral"), HasSubstr("Examples")));
+}
+
+// A real cluttered scene: few right matches among many, which all groupers must live with.
+TEST(EvaluateRealData, AClutteredScene) {
+  const char* folder = std::getenv("CORRAL_REAL_DATA");
+  if (!folder) GTEST_SKIP() << "CORRAL_REAL_DATA does not name the folder of the real data sets";
+  const Workplace place;
+  const std::string root = std::string(folder) + "/u3or/";
+  std::filesystem::create_directories(place / "u3or");
+  place.put("u3or/dataset.toml", "name = \"u3or\"\n");
+  place.put("u3or/pairs.csv", "pair,source,target,truth,occlusion\nparasaurolophus-rs1," + root +
+                                  "models/parasaurolophus_low_normals2.ply," + root + "scenes/rs1_normals.ply," + root +
+                                  "gt/parasaurolophus-rs1.xf,67.8\n");
+  const Outcome outcome = place.corral("evaluate occlusion --data . -o run");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const RunFolder run = read_run(place / "run");
+  EXPECT_EQ(run.records.size(), 9u);
+  for (const StudyRecord& record : run.records) {
+    EXPECT_EQ(record.level, "[65,70)");
+    EXPECT_GT(*record.true_matches, 0);
+    EXPECT_LT(*record.true_matches, *record.matches / 10);
+  }
 }
 
 }  // namespace
