@@ -94,7 +94,7 @@ void add_scan(CLI::App& app, Action& action) {
       ->required();
   auto* view = command
                    ->add_option("--view", settings->view,
-                                "The I-th of N sensors around the y axis, by turns 25 degrees above and below")
+                                "The I-th of N sensors on a ring around the y axis that rises and falls by 25 degrees")
                    ->type_name("I/N")
                    ->capture_default_str();
   command->add_option("--from", settings->from, "Position of the sensor, mesh units; it looks at the middle, z is up")
@@ -113,9 +113,7 @@ void add_scan(CLI::App& app, Action& action) {
                    "What is met flatter than this, from its normal, is not seen")
       ->capture_default_str();
   command->add_option("--seed", settings->options.seed, "Seed of the noise")->capture_default_str();
-  command->add_option("--threads", settings->threads, "0: as many as there are; results do not depend on it")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "Size, resolution, occlusion and pose as JSON on standard output");
   command->footer(
       "Examples:\n  corral scan bunny.off -o front.ply --truth front.txt\n"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/make_u3m.h"
 
+#include <algorithm>
+
 #include "apps/dataset/set_part.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
@@ -14,6 +16,7 @@
 namespace corral {
 namespace {
 
+constexpr int kRing = 16;
 constexpr double kOverlapPr = 2, kLeastOverlap = 0.3, kMostOverlap = 0.9;
 
 std::string recipe(const MakeU3mOptions& options, const std::vector<NamedMesh>& models) {
@@ -48,7 +51,8 @@ std::vector<View> make_views(const SetPart& part, const NamedMesh& model, const 
     scan_options.spacing = spacing;
     scan_options.noise = options.noise_pr * kScanResolution * spacing;
     scan_options.seed = derive_seed(options.seed, "noise of " + name);
-    const RangeScan scan = scan_range({{&surface, {}}}, ring_sensor(model.mesh, i, options.views), scan_options);
+    const RangeScan scan =
+        scan_range({{&surface, {}}}, ring_sensor(model.mesh, i, std::max(options.views, kRing)), scan_options);
     part.put("views/" + name + ".ply", binary_ply_text(triangulated(scan)));
     views[static_cast<std::size_t>(i)] = {scan.points, point_resolution(scan.points), scan.sensor_from_world};
   });

@@ -19,7 +19,8 @@ struct MakeU3mOptions {
   ParallelFor parallel = one_by_one;
 };
 
-/// A registration set after the published one: every model seen by a ring of virtual range scanners (ring_sensor).
+/// A registration set after the published one: every model seen by virtual range scanners, the first of a ring of 16
+/// (ring_sensor), or of as many as there are views. The published models have 16 to 22 views.
 ///
 ///   views/NAME-vI.ply     a view with faces, in the frame of its sensor (at the origin, looking along -z)
 ///   views/NAME.csv        the pairs of the model

@@ -154,7 +154,7 @@ VisibilityCounts make_u3or(const MakeU3orOptions& options, Progress& progress) {
 std::string to_text(const VisibilityCounts& counts) {
   return row_text("occlusion", VisibilityCounts::kOcclusion, counts.occlusion) +
          row_text("clutter", VisibilityCounts::kClutter, counts.clutter) +
-         "in no bin of one of the two: " + std::to_string(counts.outside) + "\n";
+         "in no bin of one of the two: " + std::to_string(counts.outside);
 }
 
 }  // namespace corral

@@ -36,7 +36,7 @@ struct MakeU3orOptions {
 /// Throws    IoError, InvalidInput.
 VisibilityCounts make_u3or(const MakeU3orOptions& options, Progress& progress);
 
-/// That in words, a line each for occlusion and clutter.
+/// That in words, three lines without the end of the last.
 std::string to_text(const VisibilityCounts& counts);
 
 }  // namespace corral

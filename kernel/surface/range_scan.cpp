@@ -150,7 +150,7 @@ RangeSensor ring_sensor(const Mesh& mesh, int i, int n, double distance) {
   if (!(i >= 0 && i < n))
     throw InvalidInput("ring_sensor", "view", static_cast<double>(i),
                        "a number of a view, 0 .. " + std::to_string(n - 1));
-  const double turn = 360 * kRadians * i / n, tilt = (i % 2 == 0 ? 25 : -25) * kRadians;
+  const double turn = 360 * kRadians * i / n, tilt = 25 * kRadians * std::sin(2 * turn);
   const Eigen::Vector3d away(std::cos(tilt) * std::sin(turn), std::sin(tilt), std::cos(tilt) * std::cos(turn));
   const Eigen::Vector3d low = mesh.vertices.colwise().minCoeff(), high = mesh.vertices.colwise().maxCoeff();
   RangeSensor sensor;

@@ -29,8 +29,8 @@ struct RangeSensor {
 };
 
 /// The i-th of n sensors around a surface, which all look at the middle of its box from `distance` of its diagonals away:
-/// on a ring about its y axis in equal steps, by turns 25 degrees above and below, so that neighbours overlap, and each
-/// rolled about its own axis by another angle. Throws InvalidInput unless 0 <= i < n.
+/// on a ring about its y axis in equal steps that rises to 25 degrees above the middle and falls as far below it twice a
+/// turn, each rolled about its own axis by another angle. Throws InvalidInput unless 0 <= i < n.
 RangeSensor ring_sensor(const Mesh& mesh, int i, int n, double distance = 3);
 
 /// pr of the scan of a curved surface in spacings of its rays, about: 1.03 to 1.14 for animals and busts.

@@ -249,16 +249,18 @@ TEST(RangeScan, NeighboursOnTheRingOverlap) {
   const Mesh mesh = bumpy_sphere(4, 6);
   const SurfaceTree ball(mesh);
   std::vector<RangeScan> views;
-  for (int i = 0; i < 8; ++i) views.push_back(scan_range({{&ball, {}}}, ring_sensor(mesh, i, 8), with_spacing(0.04)));
-  for (std::size_t i = 0; i < 8; ++i) {
-    const RangeScan &source = views[i], &target = views[(i + 1) % 8], &opposite = views[(i + 4) % 8];
+  for (int i = 0; i < 16; ++i) views.push_back(scan_range({{&ball, {}}}, ring_sensor(mesh, i, 16), with_spacing(0.05)));
+  const auto overlap = [&](std::size_t i, std::size_t steps) {
+    const RangeScan &source = views[i], &target = views[(i + steps) % 16];
     const RigidTransform truth = target.sensor_from_world * source.sensor_from_world.inverse();
-    const double overlap = overlap_share(source.points, target.points, truth, 0.09);
-    EXPECT_GT(overlap, 0.4) << i;
-    EXPECT_LT(overlap, 0.9) << i;
-    EXPECT_LT(overlap_share(source.points, opposite.points,
-                            opposite.sensor_from_world * source.sensor_from_world.inverse(), 0.09),
-              0.1);
+    return overlap_share(source.points, target.points, truth, 0.11);
+  };
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_GT(overlap(i, 1), 0.7) << i;
+    EXPECT_LT(overlap(i, 1), 0.97) << i;
+    EXPECT_GT(overlap(i, 3), 0.4) << i;
+    EXPECT_LT(overlap(i, 3), 0.7) << i;
+    EXPECT_LT(overlap(i, 8), 0.3) << i << ": the other side";
   }
   EXPECT_THROW(ring_sensor(mesh, 8, 8), InvalidInput);
   EXPECT_THROW(ring_sensor(mesh, -1, 8), InvalidInput);
