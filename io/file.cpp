@@ -40,6 +40,14 @@ void write_all(int descriptor, const std::string& content, const std::string& pa
   }
 }
 
+/// What the name of a file ends in that has not taken its place yet; mkstemp puts other letters for the last six.
+constexpr char kTemporary[] = ".part-XXXXXX";
+
+bool is_temporary(const fs::path& name) {
+  const std::string ending = name.extension().string();
+  return ending.size() == sizeof kTemporary - 1 && ending.rfind(".part-", 0) == 0;
+}
+
 /// Permissions of the file that is there, else those that the umask gives a new one.
 mode_t mode_for(const fs::path& place) {
   struct stat status;
@@ -65,7 +73,7 @@ class StagedFile {
     if (fs::is_directory(status)) throw IoError(file.path, "", "is a directory, expected a file to write");
     is_device_ = fs::exists(status) && !fs::is_regular_file(status);
     if (is_device_) return;
-    temporary_ = place_.string() + ".XXXXXX";
+    temporary_ = place_.string() + kTemporary;
     const Descriptor descriptor{::mkstemp(temporary_.data())};
     if (descriptor.value < 0) {
       temporary_.clear();
@@ -154,6 +162,15 @@ void remove_file(const std::string& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error) && !fs::remove(path, error))
     throw IoError(path, "", "cannot be removed (" + error.message() + ")");
+}
+
+void remove_leftovers(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> leftovers;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_regular_file(error) && is_temporary(entry->path().filename())) leftovers.push_back(entry->path());
+  if (error) throw IoError(folder, "", "cannot be read as a folder (" + error.message() + ")");
+  for (const std::string& path : leftovers) remove_file(path);
 }
 
 void make_folder(const std::string& path) {

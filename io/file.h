@@ -27,6 +27,10 @@ void check_writable(const std::string& path);
 /// Takes away a file that an earlier run left, if it is there. Pipes and devices stay. Throws IoError.
 void remove_file(const std::string& path);
 
+/// Takes away what writes that were killed left in a folder and below: files beside a place that never took it. Throws
+/// IoError if the folder cannot be read.
+void remove_leftovers(const std::string& folder);
+
 /// Creates a folder and its parents if they are not there. Throws IoError if that is not possible.
 void make_folder(const std::string& path);
 

@@ -24,7 +24,10 @@ SetFolder::SetFolder(const std::string& folder, const std::string& recipe) : fol
                   "holds a data set made otherwise (see " + std::string(kRecipeName) +
                       "), expected an empty folder or the same input and options");
   check_writable(path("dataset.toml"));
-  if (!fs::exists(note)) write_file(note, recipe);
+  if (fs::exists(note))
+    remove_leftovers(folder);
+  else
+    write_file(note, recipe);
 }
 
 std::string SetFolder::path(const std::string& file) const { return (fs::path(folder_) / file).string(); }

@@ -68,7 +68,7 @@ Mesh thin_mesh(const Mesh& mesh, double share, std::uint64_t seed) {
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row) {
     const auto owner = [&](int i) { return owners[static_cast<std::size_t>(mesh.triangles(row, i))]; };
     const int a = owner(0), b = owner(1), c = owner(2);
-    if (a >= 0 && a != b && b != c && c != a) corners.insert(corners.end(), {a, b, c});
+    if (a >= 0 && b >= 0 && c >= 0 && a != b && b != c && c != a) corners.insert(corners.end(), {a, b, c});
   }
   Mesh thin{mesh.vertices(kept, Eigen::all), {}};
   thin.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(

@@ -131,6 +131,7 @@ TEST(MakeB3r, GoesOnWhereItWasInterrupted) {
   EXPECT_EQ(half.status, 3);
   EXPECT_THAT(half.err, HasSubstr("set: is half made"));
   place.put("set/scenes/ball-1_noise0.1.ply", "kept");
+  place.put("set/scenes/odd-one-1_noise0.2.ply.part-aB3dE6", "what a killed write left");
   ASSERT_EQ(place.corral(line).status, 0);
   auto again = contents(place / "set");
   EXPECT_EQ(again["scenes/ball-1_noise0.1.ply"], "kept") << "a finished file is made anew";

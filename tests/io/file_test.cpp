@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -246,6 +247,39 @@ TEST(WriteFiles, EachHasAPlaceOfItsOwn) {
                 write_files({{folder / "a", "1"}, {folder / "./a", "2"}});
               }),
               HasSubstr("two outputs at once"));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(RemoveLeftovers, TakesAwayWhatAKilledWriteLeft) {
+  const ScratchFolder folder;
+  make_folder(folder / "below");
+  for (const char* name : {"a.ply.part-Xy12zZ", "below/b.xf.part-000000"}) put_text(folder / name, "half");
+  const std::vector<std::string> others = {"a.ply", "pairs.csv.backup", "b.part-123456.ply", "c.ply.part-1"};
+  for (const std::string& name : others) put_text(folder / name, "whole");
+  remove_leftovers(folder.path());
+  EXPECT_EQ(folder.names().size(), others.size() + 1);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "below"));
+  for (const std::string& name : others) EXPECT_EQ(read_file(folder / name), "whole");
+  EXPECT_THAT(io_error_of([&] { remove_leftovers(folder / "none"); }), StartsWith(folder / "none: cannot be read"));
+}
+
+TEST(RemoveLeftovers, KnowsTheNamesThatWritesUse) {
+  const ScratchFolder folder;
+  // A child that is killed by the limit on the size of a file, in the middle of a write.
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const rlimit none{0, 0}, small{1000, 1000};
+    ::setrlimit(RLIMIT_CORE, &none);
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    ::signal(SIGXFSZ, SIG_DFL);
+    write_file(folder / "x.ply", std::string(5000, 'x'));
+    ::_exit(0);
+  }
+  int ended = 0;
+  ASSERT_EQ(::waitpid(child, &ended, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(ended));
+  ASSERT_EQ(folder.names().size(), 1U);
+  remove_leftovers(folder.path());
   EXPECT_TRUE(folder.names().empty());
 }
 
