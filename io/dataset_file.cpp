@@ -83,7 +83,8 @@ Dataset read_dataset(const std::string& folder) {
   Dataset dataset;
   dataset.folder = folder;
   const std::string path = dataset.path("dataset.toml");
-  if (!std::filesystem::exists(path) && std::filesystem::exists(dataset.path(kRecipeName)))
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(dataset.path(kRecipeName), ignored))
     throw IoError(folder, "", "is half made: its manifest is missing, run the command that makes it again to go on");
   const TomlTable table = TomlTable::read(path);
   table.only({"name", "kind", "units", "resolution", "provenance", "licence", "citation"});

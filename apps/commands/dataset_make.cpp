@@ -20,17 +20,31 @@ void add_seed(CLI::App& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "Seed of all that is random")->capture_default_str();
 }
 
+void add_models(CLI::App& command, std::string& models) {
+  command.add_option("--models", models, "Folder of the models: every mesh in it")->type_name("FOLDER")->required();
+}
+
+void add_noise(CLI::App& command, double& noise_pr) {
+  command.add_option("--noise-pr", noise_pr, "Deviation of the depth along each ray")->capture_default_str();
+}
+
+/// The options of a maker, and what they are filled from.
+template <class Options>
+struct MakeSettings {
+  std::string models;
+  Options options;
+  int threads = 0;
+
+  void resolve() {
+    options.models = mesh_files(models);
+    options.parallel = workers(threads);
+  }
+};
+
 void add_b3r(CLI::App& make, Action& action) {
-  struct Settings {
-    std::string models;
-    MakeB3rOptions options;
-    int threads = 0;
-  };
   auto* command = make.add_subcommand("b3r", "Retrieval: moved copies of models at 9 levels of noise and 9 of density");
-  auto settings = std::make_shared<Settings>();
-  command->add_option("--models", settings->models, "Folder of the models: every mesh in it")
-      ->type_name("FOLDER")
-      ->required();
+  auto settings = std::make_shared<MakeSettings<MakeB3rOptions>>();
+  add_models(*command, settings->models);
   add_output(*command, settings->options.output);
   add_seed(*command, settings->options.seed);
   command->add_option("--scenes-per-model", settings->options.scenes_per_model, "Moved copies of each model")
@@ -42,9 +56,8 @@ void add_b3r(CLI::App& make, Action& action) {
       "Example:\n  corral dataset make b3r --models meshes -o data/b3r --scenes-per-model 2");
   command->callback([settings, &action] {
     action = [settings]() -> int {
-      MakeB3rOptions& options = settings->options;
-      options.models = mesh_files(settings->models);
-      options.parallel = workers(settings->threads);
+      settings->resolve();
+      const MakeB3rOptions& options = settings->options;
       Progress progress(static_cast<double>(options.models.size()) * options.scenes_per_model);
       make_b3r(options, progress);
       return kOk;
@@ -52,44 +65,27 @@ void add_b3r(CLI::App& make, Action& action) {
   });
 }
 
-void add_noise(CLI::App& command, double& noise_pr) {
-  command.add_option("--noise-pr", noise_pr, "Deviation of normal noise along each ray of the scanner")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-}
-
 void add_u3or(CLI::App& make, Action& action) {
-  struct Settings {
-    std::string models;
-    MakeU3orOptions options;
-    int threads = 0;
-  };
   auto* command = make.add_subcommand("u3or", "Recognition: heaps of models seen by a virtual range scanner");
-  auto settings = std::make_shared<Settings>();
-  command->add_option("--models", settings->models, "Folder of the models: every mesh in it, 5 or more")
-      ->type_name("FOLDER")
-      ->required();
+  auto settings = std::make_shared<MakeSettings<MakeU3orOptions>>();
+  add_models(*command, settings->models);
   add_output(*command, settings->options.output);
   add_seed(*command, settings->options.seed);
-  command->add_option("--scenes", settings->options.scenes, "Scenes, of 4 and 5 models by turns")
-      ->check(CLI::Range(1, 10000))
+  command->add_option("--scenes", settings->options.scenes, "How many heaps")
+      ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Scenes are chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 %; how far they do is "
-      "said\n"
-      "in the end. Interrupted, the same command goes on.\n"
-      "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 20");
+      "4 or 5 models in a scene; truth, occlusion and clutter are exact. Interrupted, the same command goes on.\n"
+      "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 12");
   command->callback([settings, &action] {
     action = [settings]() -> int {
-      MakeU3orOptions& options = settings->options;
-      options.models = mesh_files(settings->models);
-      options.parallel = workers(settings->threads);
+      settings->resolve();
       VisibilityCounts counts;
       {
-        Progress progress(3.0 * options.scenes);
-        counts = make_u3or(options, progress);
+        Progress progress(3.0 * settings->options.scenes);
+        counts = make_u3or(settings->options, progress);
       }
       say(to_text(counts));
       return kOk;
@@ -98,16 +94,9 @@ void add_u3or(CLI::App& make, Action& action) {
 }
 
 void add_u3m(CLI::App& make, Action& action) {
-  struct Settings {
-    std::string models;
-    MakeU3mOptions options;
-    int threads = 0;
-  };
   auto* command = make.add_subcommand("u3m", "Registration: models seen from all around by a virtual range scanner");
-  auto settings = std::make_shared<Settings>();
-  command->add_option("--models", settings->models, "Folder of the models: every mesh in it")
-      ->type_name("FOLDER")
-      ->required();
+  auto settings = std::make_shared<MakeSettings<MakeU3mOptions>>();
+  add_models(*command, settings->models);
   add_output(*command, settings->options.output);
   add_seed(*command, settings->options.seed);
   command->add_option("--views", settings->options.views, "Views of each model")
@@ -116,15 +105,14 @@ void add_u3m(CLI::App& make, Action& action) {
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Pairs are the views that overlap by 30 .. 90 %. Interrupted, the same command goes on.\n"
-      "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 12");
+      "Kept are pairs of views that overlap by 30 to 90 %; their truth is exact. Interrupted, the same command goes "
+      "on.\n"
+      "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 8");
   command->callback([settings, &action] {
     action = [settings]() -> int {
-      MakeU3mOptions& options = settings->options;
-      options.models = mesh_files(settings->models);
-      options.parallel = workers(settings->threads);
-      Progress progress(static_cast<double>(options.models.size()));
-      make_u3m(options, progress);
+      settings->resolve();
+      Progress progress(static_cast<double>(settings->options.models.size()));
+      make_u3m(settings->options, progress);
       return kOk;
     };
   });

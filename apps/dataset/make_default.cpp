@@ -30,37 +30,37 @@ std::string package_file(const std::string& folder, const std::string& name, con
   return path;
 }
 
-/// What all makers have in common; `set` is their table of the plan and their folder.
-template <class Made>
-Made made_set(const MakeDefaultOptions& options, const std::string& set) {
-  Made made;
-  for (const std::string& name : plan().table(set).value().texts("models"))
-    made.models.push_back(package_file(options.meshes, name, "libcgal-demo"));
-  made.output = inside(options.output, set);
+/// What all makers take, for the sub-folder that is a table of the plan too.
+template <class Options>
+Options common(const MakeDefaultOptions& options, const std::string& name) {
+  Options made;
+  for (const std::string& model : plan().table(name).value().texts("models"))
+    made.models.push_back(package_file(options.meshes, model, "libcgal-demo"));
+  made.output = inside(options.output, name);
   made.seed = options.seed;
   made.parallel = options.parallel;
   return made;
 }
 
-int planned(const std::string& set, const std::string& count) {
-  return static_cast<int>(plan().table(set).value().integer(count).value());
+int count(const std::string& table, const std::string& key) {
+  return static_cast<int>(plan().table(table).value().integer(key).value());
 }
 
 MakeB3rOptions retrieval(const MakeDefaultOptions& options) {
-  auto made = made_set<MakeB3rOptions>(options, "b3r");
-  made.scenes_per_model = planned("b3r", "scenes_per_model");
+  auto made = common<MakeB3rOptions>(options, "b3r");
+  made.scenes_per_model = count("b3r", "scenes_per_model");
   return made;
 }
 
 MakeU3orOptions recognition(const MakeDefaultOptions& options) {
-  auto made = made_set<MakeU3orOptions>(options, "u3or");
-  made.scenes = planned("u3or", "scenes");
+  auto made = common<MakeU3orOptions>(options, "u3or");
+  made.scenes = count("u3or", "scenes");
   return made;
 }
 
 MakeU3mOptions registration(const MakeDefaultOptions& options) {
-  auto made = made_set<MakeU3mOptions>(options, "u3m");
-  made.views = planned("u3m", "views");
+  auto made = common<MakeU3mOptions>(options, "u3m");
+  made.views = count("u3m", "views");
   return made;
 }
 
@@ -92,16 +92,14 @@ void make_real_recognition(const std::vector<PublishedInstance>& instances, cons
 double default_steps(const MakeDefaultOptions& options) {
   const MakeB3rOptions b3r = retrieval(options);
   return static_cast<double>(b3r.models.size()) * b3r.scenes_per_model + 3.0 * recognition(options).scenes +
-         static_cast<double>(registration(options).models.size()) + static_cast<double>(real_instances(options).size());
+         static_cast<double>(registration(options).models.size() + real_instances(options).size());
 }
 
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
   const auto instances = real_instances(options);  // what is missing is said before the work
-  const MakeU3orOptions u3or = recognition(options);
-  const MakeU3mOptions u3m = registration(options);
   make_b3r(retrieval(options), progress);
-  make_u3or(u3or, progress);
-  make_u3m(u3m, progress);
+  make_u3or(recognition(options), progress);
+  make_u3m(registration(options), progress);
   if (!instances.empty()) make_real_recognition(instances, options, progress);
 }
 

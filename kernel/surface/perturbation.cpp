@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/perturbation.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
 
 #include "kernel/error.h"
 #include "kernel/random.h"
@@ -67,20 +64,15 @@ Mesh thin_mesh(const Mesh& mesh, double share, std::uint64_t seed) {
   const auto rows = static_cast<int>(mesh.vertices.rows());
   const Indices kept = random_rows(rows, static_cast<int>(std::lround(share * rows)), seed);
   const Indices owners = nearest_kept(mesh, kept);
-  std::set<std::array<int, 3>> seen;  // several triangles may end at the same three vertices
   Indices corners;
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row) {
-    std::array<int, 3> face;
-    for (int i = 0; i < 3; ++i)
-      face[static_cast<std::size_t>(i)] = owners[static_cast<std::size_t>(mesh.triangles(row, i))];
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-    const auto [a, b, c] = face;
-    if (a >= 0 && a != b && b != c && c != a && seen.insert(face).second) corners.insert(corners.end(), {a, b, c});
+    const auto owner = [&](int i) { return owners[static_cast<std::size_t>(mesh.triangles(row, i))]; };
+    const int a = owner(0), b = owner(1), c = owner(2);
+    if (a >= 0 && a != b && b != c && c != a) corners.insert(corners.end(), {a, b, c});
   }
-  Mesh thin{mesh.vertices(kept, Eigen::all), Triangles(static_cast<Eigen::Index>(corners.size() / 3), 3)};
-  for (Eigen::Index row = 0; row < thin.triangles.rows(); ++row)
-    thin.triangles.row(row) << corners[static_cast<std::size_t>(3 * row)],
-        corners[static_cast<std::size_t>(3 * row + 1)], corners[static_cast<std::size_t>(3 * row + 2)];
+  Mesh thin{mesh.vertices(kept, Eigen::all), {}};
+  thin.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+      corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
   return thin;
 }
 

@@ -210,6 +210,35 @@ TEST(MakeB3r, RefusesModelsThatItCannotTellApartOrRead) {
   EXPECT_EQ(place.corral("dataset").status, 2);
 }
 
+/// Four more models, for heaps of five.
+void put_more_models(const Workplace& place) {
+  for (std::uint64_t seed = 3; seed < 7; ++seed)
+    write_mesh(place / ("meshes/more" + std::to_string(seed) + ".ply"), testing::bumpy_sphere(3, seed));
+}
+
+TEST(MakeScans, HeapsAndViewsAreSetsWhoseTruthsHold) {
+  const Workplace place;
+  put_models(place);
+  put_more_models(place);
+  const Outcome heaps = place.corral("dataset make u3or --models meshes -o heaps --scenes 1 --seed 3");
+  ASSERT_EQ(heaps.status, 0) << heaps.err;
+  EXPECT_THAT(heaps.err, HasSubstr("occlusion"));
+  const Dataset recognition = read_dataset(place / "heaps");
+  EXPECT_EQ(recognition.kind, "recognition");
+  EXPECT_GE(recognition.pairs.size(), 3U);
+  for (const char* name : {"more3.ply", "more4.ply", "more5.ply", "more6.ply"})
+    fs::remove(place / ("meshes/" + std::string(name)));
+  const Outcome views = place.corral("dataset make u3m --models meshes -o views --views 4 --noise-pr 0.05");
+  ASSERT_EQ(views.status, 0) << views.err;
+  EXPECT_EQ(read_dataset(place / "views").kind, "registration");
+  for (const char* name : {"heaps", "views"}) {
+    const Outcome checked = place.corral("dataset check " + std::string(name));
+    EXPECT_EQ(checked.status, 0) << checked.out;
+  }
+  EXPECT_EQ(place.corral("dataset make u3m --models meshes -o other --views 1").status, 2);
+  EXPECT_EQ(place.corral("dataset make u3or --models meshes -o other --scenes 0").status, 2);
+}
+
 TEST(MakeDefault, NamesThePackageOfAMissingMesh) {
   const Workplace place;
   put_models(place);
