@@ -97,8 +97,6 @@ double default_steps(const MakeDefaultOptions& options) {
 
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
   const auto instances = real_instances(options);  // what is missing is said before the work
-  const MakeU3orOptions u3or = recognition(options);
-  const MakeU3mOptions u3m = registration(options);
   make_b3r(retrieval(options), progress);
   make_u3or(u3or, progress);
   make_u3m(u3m, progress);

@@ -163,5 +163,14 @@ TEST(ThinMesh, TrianglesFollowTheNearestKeptVertex) {
   EXPECT_EQ(thin_mesh(mesh, 1, 1).triangles.rows(), 0);
 }
 
+TEST(ThinMesh, LeavesOutTrianglesThatNoHalfEdgesCanTake) {
+  // Three triangles on one edge: the third is none of a surface, and no edge leads to its last corner.
+  Mesh mesh;
+  mesh.vertices = Points::Random(6, 3);
+  mesh.triangles.resize(3, 3);
+  mesh.triangles << 0, 1, 2, 1, 0, 3, 0, 1, 4;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) thin_mesh(mesh, 0.5, seed).validate("thin");
+}
+
 }  // namespace
 }  // namespace corral
