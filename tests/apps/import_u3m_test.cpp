@@ -51,12 +51,14 @@ struct Published {
     put_text(scratch / "views/README.txt", "not a view\n");
   }
 
-  std::vector<std::string> import(const std::string& truth, double least_overlap = 0.3) const {
+  std::vector<std::string> import(const std::string& truth, double least_overlap = 0.3,
+                                  double most_overlap = 0.9) const {
     ImportU3mOptions options;
     options.folder = scratch.path();
     options.output = scratch / "set";
     if (!truth.empty()) options.truth = scratch / truth;
     options.least_overlap = least_overlap;
+    options.most_overlap = most_overlap;
     options.parallel = workers(0);
     Progress progress(1);
     return import_u3m(options, progress);
@@ -102,6 +104,20 @@ TEST(ImportU3m, PublishedTransformsBecomeTheTruthOfPairs) {
     EXPECT_GE(overlap, 30);
     EXPECT_LE(overlap, 90);
   }
+}
+
+TEST(ImportU3m, PairsThatShareTooLittleOrTooMuchAreLeftOut) {
+  const Published published(3);
+  published.import("gt", 0.01, 1);
+  const Dataset all = published.set();
+  ASSERT_EQ(all.pairs.size(), 3U);
+  std::vector<double> overlaps;
+  for (const DatasetPair& pair : all.pairs) overlaps.push_back(*attribute_number(all, pair, "overlap") / 100);
+  std::sort(overlaps.begin(), overlaps.end());
+  published.import("gt", overlaps[1] - 1e-9, overlaps[1] + 1e-9);
+  ASSERT_EQ(published.set().pairs.size(), 1U);
+  EXPECT_NEAR(*attribute_number(published.set(), published.set().pairs[0], "overlap"), 100 * overlaps[1], 1e-6);
+  EXPECT_THAT(io_error_of([&] { published.import("gt", 0.99, 1); }), HasSubstr("no two views overlap enough"));
 }
 
 TEST(ImportU3m, WithoutTransformsTheTruthIsMade) {
