@@ -98,8 +98,8 @@ double default_steps(const MakeDefaultOptions& options) {
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
   const auto instances = real_instances(options);  // what is missing is said before the work
   make_b3r(retrieval(options), progress);
-  make_u3or(u3or, progress);
-  make_u3m(u3m, progress);
+  make_u3or(recognition(options), progress);
+  make_u3m(registration(options), progress);
   if (!instances.empty()) make_real_recognition(instances, options, progress);
 }
 
