@@ -5,9 +5,13 @@
 #include <filesystem>
 
 #include "apps/commands/commands.h"
+#include "apps/experiment/claim_report.h"
+#include "apps/experiment/comparison.h"
+#include "apps/experiment/page.h"
 #include "apps/experiment/pair_gallery.h"
 #include "apps/experiment/study_figures.h"
 #include "apps/figure/gnuplot.h"
+#include "apps/figure/rank_diagram.h"
 #include "apps/progress.h"
 #include "io/file.h"
 #include "kernel/error.h"
@@ -18,10 +22,28 @@ namespace {
 struct Settings {
   std::vector<std::string> runs, pairs;
   std::string output;
+  int pairs_in_3d = PageOptions().pairs_in_3d;
 };
 
+/// For every experiment with two methods or more on common pairs, their average ranks by F1 and by success.
+std::vector<RankDiagram> rank_diagrams(const std::vector<RunFolder>& runs) {
+  std::vector<RankDiagram> diagrams;
+  for (const RunFolder& run : runs)
+    for (const ExperimentTable& table : experiment_tables(run))
+      for (const auto& [metric, measure] : {std::pair(Metric::F1, "F1"), std::pair(Metric::Success, "success")}) {
+        const MethodComparison compared = compare_methods(table, metric);
+        if (compared.methods.size() < 2 || compared.pairs < 2) continue;
+        const ExperimentInfo& info = table.info;
+        diagrams.push_back({file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-ranks-" + measure,
+                            info.title + ": average ranks by " + measure, compared.methods,
+                            compared.ranks.average_ranks, compared.ranks.critical_difference, compared.ranks.cliques});
+      }
+  return diagrams;
+}
+
 /// Data, tables and scripts; the names of the scripts.
-std::vector<std::string> write_figures(const StudyFigures& figures, const std::string& folder) {
+std::vector<std::string> write_figures(const StudyFigures& figures, const std::vector<RankDiagram>& ranks,
+                                       const std::string& folder) {
   std::vector<FileContent> files;
   std::vector<std::string> names;
   const auto add = [&](const std::string& name, const std::string& csv, const std::string& script) {
@@ -34,6 +56,7 @@ std::vector<std::string> write_figures(const StudyFigures& figures, const std::s
     files.push_back({folder + panel.name + ".tex", panel_latex(panel)});
   }
   for (const BoxPanel& panel : figures.boxes) add(panel.name, box_csv(panel), box_script(panel));
+  for (const RankDiagram& diagram : ranks) add(diagram.name, rank_csv(diagram), rank_script(diagram));
   write_files(files);
   return names;
 }
@@ -51,6 +74,18 @@ bool write_pictures(const GalleryPair& pair, const std::string& folder) {
   }
 }
 
+/// The findings, and everything on one page.
+void write_page(const std::vector<RunFolder>& runs, const Settings& settings) {
+  const ClaimBook book = built_in_claims();
+  const std::vector<ClaimVerdict> verdicts = judge_claims(book, runs);
+  PageOptions options;
+  options.pairs_in_3d = settings.pairs_in_3d;
+  options.verdicts = claims_json(verdicts).dump();
+  const std::string folder = settings.output + "/";
+  write_file(folder + "claims.txt", claims_text(verdicts, book.slips));
+  write_file(folder + "index.html", report_page(runs, options));
+}
+
 int report(const Settings& settings) {
   std::vector<RunFolder> runs;
   for (const std::string& run : settings.runs) runs.push_back(read_run(run));
@@ -58,8 +93,10 @@ int report(const Settings& settings) {
   const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
   const std::string folder = settings.output + "/", pictures = folder + "pairs/";
   make_folder(gallery.empty() ? folder : pictures);
-  const std::vector<std::string> names = write_figures(figures, folder);
-  Progress progress(static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
+  const std::vector<std::string> names = write_figures(figures, rank_diagrams(runs), folder);
+  Progress progress(40 + static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
+  progress.begin("page", 40);
+  write_page(runs, settings);
   bool is_whole = true;
   for (const GalleryPair& pair : gallery) {
     progress.begin("pictures of " + pair.name(), 40);
@@ -86,7 +123,11 @@ void add_report(CLI::App& app, Action& action) {
           "whose share of right matches is in the middle)")
       ->type_name("NAMES")
       ->delimiter(',');
+  command->add_option("--pairs-in-3d", settings->pairs_in_3d, "Pairs whose surfaces and matches the page carries")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   command->footer(
+      "index.html is the whole report on one page that opens from disk; claims.txt says which findings hold.\n"
       "Every figure is <experiment>-<dataset>-<measure>.pdf and .svg, with its numbers (.csv), a table (.tex) and the "
       "script "
       "that drew\nit (.gp: change what you like and run gnuplot on it). Pictures of pairs are in pairs/.\n"
