@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   corral::add_scan(app, action);
   corral::add_triangulate(app, action);
   corral::add_dataset(app, action);
+  corral::add_align(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

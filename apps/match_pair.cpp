@@ -30,87 +30,62 @@ std::optional<double> as_length(const std::string& rule) {
   return value && *value > 0 && std::isfinite(*value) ? value : std::nullopt;
 }
 
-double pair_resolution(const std::string& rule, double source, double target) {
-  if (rule == "source") return source;
-  if (rule == "target") return target;
-  if (rule == "mean") {
-    const double ratio = std::max(source, target) / std::min(source, target);
-    if (!(ratio <= kLargestRatio))
-      throw InvalidInput("match", "--resolution",
-                         to_text(source) + " on the source and " + to_text(target) + " on the target",
-                         "both in the same unit, or --resolution with the one to use");
-    return (source + target) / 2;
+Keypoints detect(const Mesh& mesh, double resolution, const MatchSettings& settings, const ParallelFor& parallel) {
+  if (settings.detector == "uniform") return detect_uniform(mesh.vertices, resolution, settings.keypoint_radius_pr);
+  if (settings.detector == "harris-mesh") {
+    HarrisMeshOptions options = settings.harris_mesh;
+    options.radius_pr = settings.keypoint_radius_pr;
+    return detect_harris_mesh(mesh, resolution, options);
   }
-  return as_length(rule).value();
+  return detect_harris(mesh.vertices, resolution, {settings.keypoint_radius_pr}, parallel);
 }
 
 /// One pair on its way from meshes to matches.
 class Pipeline {
  public:
   Pipeline(const MatchSettings& settings, const StageObserver& observer, MatchReport& report)
-      : settings_(settings), observer_(observer), report_(report), parallel_(workers(settings.threads)) {}
+      : settings_(settings), observer_(observer), report_(report) {}
 
   void measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
     mesh.validate(side);
     report.points = static_cast<int>(mesh.vertices.rows());
     report.faces = static_cast<int>(mesh.triangles.rows());
     if (settings_.inspect) stage("topology of the " + side, [&] { report.topology = inspect_topology(mesh); });
-    stage("resolution of the " + side, [&] { report.resolution = point_resolution(mesh.vertices, parallel_); });
+    stage("resolution of the " + side,
+          [&] { report.resolution = point_resolution(mesh.vertices, workers(settings_.threads)); });
   }
 
   Descriptors describe(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
-    Keypoints keypoints;
-    Points normals;
-    Descriptors descriptors;
-    stage("keypoints of the " + side, [&] { keypoints = detect(mesh); });
-    stage("normals of the " + side, [&] {
-      normals = estimate_normals(mesh, {20, settings_.normals == "mesh", Eigen::Vector3d(settings_.sensor.data())},
-                                 parallel_);
-    });
-    stage("descriptors of the " + side, [&] {
-      descriptors = describe_shot(mesh.vertices, normals, keypoints.vertices, report_.resolution,
-                                  {settings_.support_radius_pr, 10, settings_.shot}, parallel_);
-    });
-    report.candidates = keypoints.candidates;
-    report.keypoints = static_cast<int>(keypoints.vertices.size());
+    SurfaceFeatures features =
+        describe_surface(mesh, report_.resolution, settings_,
+                         [&](const std::string& name, const auto& work) { stage(name + " of the " + side, work); });
+    const Descriptors& descriptors = features.descriptors;
+    report.candidates = features.candidates;
+    report.keypoints = features.keypoints;
     report.dropped_small_support = descriptors.dropped_small_support;
     report.dropped_no_frame = descriptors.dropped_no_frame;
     report.dropped_no_histogram = descriptors.dropped_no_histogram;
     report.descriptors = static_cast<int>(descriptors.vertices.size());
-    return descriptors;
+    return std::move(features.descriptors);
   }
 
   CorrespondenceSet match(const DescribedSurface& source, const DescribedSurface& target) {
     CorrespondenceSet matches;
-    stage("matching",
-          [&] { matches = make_correspondences(source, target, report_.resolution, settings_.matching, parallel_); });
+    stage("matching", [&] { matches = match_surfaces(source, target, report_.resolution, settings_); });
     return matches;
   }
 
  private:
-  template <class Work>
-  void stage(const std::string& name, const Work& work) {
+  void stage(const std::string& name, const std::function<void()>& work) {
     if (observer_) observer_(name);
     Stopwatch watch;
     work();
     report_.stages.push_back({name, watch.lap_ms(), peak_memory_mb()});
   }
 
-  Keypoints detect(const Mesh& mesh) const {
-    if (settings_.detector == "uniform")
-      return detect_uniform(mesh.vertices, report_.resolution, settings_.keypoint_radius_pr);
-    if (settings_.detector == "harris-mesh") {
-      HarrisMeshOptions options = settings_.harris_mesh;
-      options.radius_pr = settings_.keypoint_radius_pr;
-      return detect_harris_mesh(mesh, report_.resolution, options);
-    }
-    return detect_harris(mesh.vertices, report_.resolution, {settings_.keypoint_radius_pr}, parallel_);
-  }
-
   const MatchSettings& settings_;
   const StageObserver& observer_;
   MatchReport& report_;
-  ParallelFor parallel_;
 };
 
 /// Advice on a radius (in the side's own pr) that is far from the usual one.
@@ -163,6 +138,45 @@ void MatchSettings::validate() const {
     throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
   harris_mesh.validate();
   matching.validate();
+}
+
+double pair_resolution(const std::string& rule, double source, double target) {
+  if (rule == "source") return source;
+  if (rule == "target") return target;
+  if (rule == "mean") {
+    const double ratio = std::max(source, target) / std::min(source, target);
+    if (!(ratio <= kLargestRatio))
+      throw InvalidInput("match", "--resolution",
+                         to_text(source) + " on the source and " + to_text(target) + " on the target",
+                         "both in the same unit, or --resolution with the one to use");
+    return (source + target) / 2;
+  }
+  return as_length(rule).value();
+}
+
+SurfaceFeatures describe_surface(const Mesh& mesh, double resolution, const MatchSettings& settings,
+                                 const StageRunner& stage) {
+  const ParallelFor parallel = workers(settings.threads);
+  Keypoints keypoints;
+  Points normals;
+  SurfaceFeatures features;
+  stage("keypoints", [&] { keypoints = detect(mesh, resolution, settings, parallel); });
+  stage("normals", [&] {
+    normals =
+        estimate_normals(mesh, {20, settings.normals == "mesh", Eigen::Vector3d(settings.sensor.data())}, parallel);
+  });
+  stage("descriptors", [&] {
+    features.descriptors = describe_shot(mesh.vertices, normals, keypoints.vertices, resolution,
+                                         {settings.support_radius_pr, 10, settings.shot}, parallel);
+  });
+  features.candidates = keypoints.candidates;
+  features.keypoints = static_cast<int>(keypoints.vertices.size());
+  return features;
+}
+
+CorrespondenceSet match_surfaces(const DescribedSurface& source, const DescribedSurface& target, double resolution,
+                                 const MatchSettings& settings) {
+  return make_correspondences(source, target, resolution, settings.matching, workers(settings.threads));
 }
 
 int match_stages(const MatchSettings& settings) { return settings.inspect ? 11 : 9; }

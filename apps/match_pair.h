@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/correspondence_set.h"
+#include "kernel/surface/descriptor.h"
 #include "kernel/surface/feature_matching.h"
 #include "kernel/surface/harris_mesh.h"
 #include "kernel/surface/mesh.h"
@@ -62,6 +63,27 @@ struct MatchedPair {
   CorrespondenceSet matches;
   MatchReport report;
 };
+
+/// pr of a pair by the rule of MatchSettings, from that of each side. Throws InvalidInput if they are in different units.
+double pair_resolution(const std::string& rule, double source, double target);
+
+/// One of the two surfaces as the matching wants it. Depends on the mesh, the pr and the settings alone.
+struct SurfaceFeatures {
+  int candidates = 0, keypoints = 0;  ///< as in SurfaceReport
+  Descriptors descriptors;
+};
+
+/// Runs a stage; what it is called with must be called once.
+using StageRunner = std::function<void(const std::string& stage, const std::function<void()>& work)>;
+inline void run_stage(const std::string&, const std::function<void()>& work) { work(); }
+
+/// keypoints -> normals -> frames and descriptors. `resolution`: mesh units per pr. Throws InvalidInput.
+SurfaceFeatures describe_surface(const Mesh& mesh, double resolution, const MatchSettings& settings,
+                                 const StageRunner& stage = run_stage);
+
+/// The matches of two described surfaces. Throws InvalidInput.
+CorrespondenceSet match_surfaces(const DescribedSurface& source, const DescribedSurface& target, double resolution,
+                                 const MatchSettings& settings);
 
 /// Called with what begins; may be empty.
 using StageObserver = std::function<void(const std::string& stage)>;

@@ -3,10 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 
 #include "apps/match_pair.h"
+#include "apps/read_surface.h"
 #include "grouping/registry.h"
+#include "kernel/surface/view_triangulation.h"
 
 namespace corral {
 
@@ -35,9 +38,7 @@ void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);
 void add_dataset_import(CLI::App& dataset, Action& action);
-
-/// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
-Mesh read_surface(const std::string& path);
+void add_align(CLI::App& app, Action& action);
 
 // Options that several subcommands have.
 void add_match_options(CLI::App& command, MatchSettings& settings);
@@ -49,6 +50,14 @@ Eigen::Vector3d parse_vector(const std::string& option, const std::string& text)
 
 /// --threads, checked where workers() are made of it.
 void add_threads(CLI::App& command, int& threads);
+
+/// --sensor and --direction, as typed.
+struct SensorSettings {
+  std::string sensor = "0,0,0";
+  std::optional<std::string> direction;
+};
+void add_sensor_options(CLI::App& command, SensorSettings& settings);
+ViewOptions view_options(const SensorSettings& settings);  ///< throws UsageError
 
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
-#include <cmath>
-
 #include "apps/commands/commands.h"
 #include "apps/progress.h"
 #include "apps/report.h"
 #include "io/file.h"
 #include "io/matches_file.h"
-#include "io/mesh_file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -39,19 +36,6 @@ int match(Settings settings) {
 }
 
 }  // namespace
-
-Mesh read_surface(const std::string& path) {
-  Mesh mesh = read_mesh(path);
-  const double diagonal = bounding_box_diagonal(mesh.vertices);
-  if (!std::isfinite(diagonal))
-    throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
-  if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface");
-  if (!(diagonal > 0))
-    throw IoError(path, "",
-                  "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +
-                      "at least two places (the resolution would be zero)");
-  return mesh;
-}
 
 void add_match_options(CLI::App& command, MatchSettings& settings) {
   const auto option = [&](const std::string& name, auto& value, const std::string& text) {

@@ -18,19 +18,16 @@ namespace {
 constexpr double kManyDropped = 0.2;
 
 struct Settings {
-  std::string view, output, sensor = "0,0,0";
-  std::optional<std::string> direction;
-  ViewOptions options;
+  std::string view, output;
+  SensorSettings sensor;
+  double longest_edge_pr = ViewOptions().longest_edge_pr, grazing_deg = ViewOptions().grazing_deg;
   bool json = false;
 };
 
-ViewOptions view_options(const Settings& settings) {
-  ViewOptions options = settings.options;
-  options.sensor = parse_vector("--sensor", settings.sensor);
-  if (settings.direction) {
-    options.direction = parse_vector("--direction", *settings.direction);
-    if (options.direction->isZero(0)) throw UsageError("--direction: expected a vector that is not zero");
-  }
+ViewOptions triangulation_options(const Settings& settings) {
+  ViewOptions options = view_options(settings.sensor);
+  options.longest_edge_pr = settings.longest_edge_pr;
+  options.grazing_deg = settings.grazing_deg;
   if (!(options.longest_edge_pr > 0) || !std::isfinite(options.longest_edge_pr))
     throw UsageError("--longest-edge-pr: expected a finite length above zero");
   if (!(options.grazing_deg > 0 && options.grazing_deg <= 90))
@@ -55,7 +52,7 @@ Json to_json(const Mesh& input, const ViewTriangulation& view, double resolution
 }
 
 int triangulate(const Settings& settings) {
-  const ViewOptions options = view_options(settings);
+  const ViewOptions options = triangulation_options(settings);
   check_ply_name(settings.output);
   const Mesh input = read_surface(settings.view);
   const double resolution = point_resolution(input.vertices);
@@ -75,21 +72,6 @@ int triangulate(const Settings& settings) {
 
 }  // namespace
 
-Eigen::Vector3d parse_vector(const std::string& option, const std::string& text) {
-  Eigen::Vector3d vector;
-  std::size_t begin = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
-    const std::optional<double> number =
-        end == std::string::npos ? std::nullopt : parse_double(std::string_view(text).substr(begin, end - begin));
-    if (!number || !std::isfinite(*number))
-      throw UsageError(option + ": found '" + text + "', expected three finite numbers x,y,z");
-    vector(axis) = *number;
-    begin = end + 1;
-  }
-  return vector;
-}
-
 void add_triangulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("triangulate", "Faces for a range scan that is a point cloud seen by one sensor");
   auto settings = std::make_shared<Settings>();
@@ -99,20 +81,13 @@ void add_triangulate(CLI::App& app, Action& action) {
   command->add_option("-o,--output", settings->output, "The same points with faces (PLY)")
       ->type_name("FILE")
       ->required();
-  auto* sensor = command->add_option("--sensor", settings->sensor, "Position of the sensor, mesh units")
-                     ->type_name("X,Y,Z")
-                     ->capture_default_str();
+  add_sensor_options(*command, settings->sensor);
   command
-      ->add_option("--direction", settings->direction,
-                   "The way the sensor looks, if it is far away or its position unknown")
-      ->type_name("X,Y,Z")
-      ->excludes(sensor);
-  command
-      ->add_option("--longest-edge-pr", settings->options.longest_edge_pr,
+      ->add_option("--longest-edge-pr", settings->longest_edge_pr,
                    "A triangle with a longer edge spans a jump in depth, and is dropped")
       ->capture_default_str();
   command
-      ->add_option("--grazing-deg", settings->options.grazing_deg,
+      ->add_option("--grazing-deg", settings->grazing_deg,
                    "A triangle whose normal is further from the ray to the sensor is dropped")
       ->capture_default_str();
   command->add_flag("--json", settings->json, "What was kept and dropped as JSON on standard output");

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// corral align: views of one object find their common frame.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/align/align_view_set.h"
+#include "apps/align/alignment_files.h"
+#include "apps/commands/commands.h"
+#include "apps/progress.h"
+#include "apps/read_surface.h"
+#include "apps/report.h"
+#include "apps/workers.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::vector<std::string> views;
+  std::string output, poses;
+  SensorSettings sensor;
+  int threads = 0;
+  bool json = false;
+};
+
+std::vector<std::string> view_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) {
+    names.push_back(view_name(path));
+    if (std::count(names.begin(), names.end(), names.back()) > 1)
+      throw UsageError("two views are called '" + names.back() + "', expected a name of its own for each");
+  }
+  return names;
+}
+
+int align(const Settings& settings) {
+  if (settings.views.size() < 2) throw UsageError("expected two views at least");
+  const std::vector<std::string> names = view_names(settings.views);
+  const ViewOptions sensor = view_options(settings.sensor);
+  std::vector<Mesh> meshes;
+  for (const std::string& path : settings.views) meshes.push_back(read_surface(path));
+  std::vector<ViewPair> poses;
+  if (!settings.poses.empty()) poses = read_view_pairs(settings.poses, names);
+  make_folder(settings.output + "/poses");
+  check_writable(settings.output + "/pairs.csv");
+
+  const ParallelFor parallel = workers(settings.threads);
+  auto progress = std::make_unique<Progress>(align_steps(static_cast<int>(meshes.size())));
+  const ViewSet views(meshes, sensor, parallel);
+  const AlignedViews aligned =
+      settings.poses.empty()
+          ? align_view_set(views, {}, parallel,
+                           [&](const std::string& what, double steps) { progress->begin(what, steps); })
+          : align_view_set(views, poses, {});
+  progress.reset();
+  write_files(alignment_files(settings.output, names, aligned));
+  for (std::size_t old = aligned.pairs.size() + 1; std::filesystem::exists(pose_file(settings.output, old)); ++old)
+    remove_file(pose_file(settings.output, old));  // of an earlier run
+  if (settings.json)
+    put("", to_json(names, aligned));
+  else
+    put("", alignment_text(names, aligned));
+  const int parts = 1 + *std::max_element(aligned.part.begin(), aligned.part.end());
+  if (parts > 1)
+    say("note: nothing connects the " + std::to_string(parts) + " parts; each has the frame of its first view");
+  if (!aligned.converged) say("note: the pose graph was still moving when it was stopped");
+  return kOk;
+}
+
+}  // namespace
+
+void add_align(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("align", "Views of one object into one frame, with a verdict on every pair");
+  auto settings = std::make_shared<Settings>();
+  command
+      ->add_option("views", settings->views, "Range scans; point lists (.txt too) get faces as triangulate makes them")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-o,--output", settings->output, "Folder for <view>.xf (world from view), pairs.csv and poses/")
+      ->type_name("FOLDER")
+      ->required();
+  command
+      ->add_option("--poses", settings->poses,
+                   "Judge these poses instead of looking for some: source,target,transform[,weight] by view name")
+      ->type_name("FILE");
+  add_sensor_options(*command, settings->sensor);
+  command->add_option("--threads", settings->threads, "0: as many as the machine has")->capture_default_str();
+  command->add_flag("--json", settings->json, "Poses, pairs and parts as JSON on standard output");
+  command->footer(
+      "Verdicts: agrees (other pairs lead there too), contradicts (they lead elsewhere), unchecked (none leads "
+      "there).\n"
+      "off pr: how far the pair moves the points of its source from where the alignment has them. in front %: points "
+      "of\n"
+      "a view that the other would have seen before its own, the larger share of both; a right pose has next to none.\n"
+      "Examples:\n  corral align view*.txt -o aligned\n"
+      "  corral align scan*.ply --direction 0,0,-1 -o aligned --json\n"
+      "  corral align view*.txt --poses aligned/pairs.csv -o judged");
+  command->callback([settings, &action] { action = [settings] { return align(*settings); }; });
+}
+
+}  // namespace corral
