@@ -55,6 +55,7 @@ Eigen::Vector3d parse_vector(const std::string& option, const std::string& text)
 
 /// --threads, checked where workers() are made of it.
 void add_threads(CLI::App& command, int& threads);
+
 /// --sensor and --direction, as typed.
 struct SensorSettings {
   std::string sensor = "0,0,0";

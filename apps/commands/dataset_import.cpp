@@ -3,6 +3,7 @@
 // what is to be said, and a function here.
 #include "apps/commands/commands.h"
 #include "apps/dataset/import_b3r.h"
+#include "apps/dataset/import_u3m.h"
 #include "apps/dataset/import_u3or.h"
 #include "apps/report.h"
 #include "apps/workers.h"
@@ -85,6 +86,46 @@ void add_u3or(CLI::App& import, Action& action) {
   });
 }
 
+void add_u3m(CLI::App& import, Action& action) {
+  struct Settings {
+    ImportU3mOptions options;
+    SensorSettings sensor;
+    int threads = 0;
+  };
+  auto* command =
+      import.add_subcommand("u3m", "The UWA views, or any views of objects: makes the truth that they lack");
+  auto settings = std::make_shared<Settings>();
+  add_folders(*command, settings->options.folder, settings->options.output);
+  command
+      ->add_option(
+          "--truth", settings->options.truth,
+          "Published transforms in place of those made: VIEW-to-ANYTHING.xf into one frame, or VIEW-to-VIEW.xf")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--object", settings->options.object, "What all views show; else their names without numbers say it")
+      ->type_name("NAME");
+  add_sensor_options(*command, settings->sensor);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Views are meshes, or lists of points seen by a sensor. Kept are pairs that overlap by 30 to 90 %; every doubt "
+      "is said.\n"
+      "Examples:\n  corral dataset import u3m ~/u3m -o data/u3m\n"
+      "  corral dataset import u3m ~/u3m/views -o data/u3m --truth ~/u3m/gt");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      settings->options.sensor = view_options(settings->sensor);
+      settings->options.parallel = workers(settings->threads);
+      std::vector<std::string> notes;
+      {
+        Progress progress(import_steps(settings->options));
+        notes = import_u3m(settings->options, progress);
+      }
+      say_all(notes);
+      return kOk;
+    };
+  });
+}
+
 }  // namespace
 
 void add_dataset_import(CLI::App& dataset, Action& action) {
@@ -92,6 +133,7 @@ void add_dataset_import(CLI::App& dataset, Action& action) {
   import->require_subcommand(1);
   add_b3r(*import, action);
   add_u3or(*import, action);
+  add_u3m(*import, action);
 }
 
 }  // namespace corral

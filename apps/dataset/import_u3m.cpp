@@ -243,6 +243,13 @@ class Import {
 
 }  // namespace
 
+double import_steps(const ImportU3mOptions& options) {
+  double steps = 0;
+  for (const Object& object : find_objects(options))
+    steps += 1 + (options.truth.empty() ? align_steps(static_cast<int>(object.views.size())) : 0);
+  return steps;
+}
+
 std::vector<std::string> import_u3m(const ImportU3mOptions& options, Progress& progress) {
   return Import(options, progress).run();
 }

@@ -21,6 +21,9 @@ struct ImportU3mOptions {
   ParallelFor parallel = one_by_one;
 };
 
+/// How many steps of progress it has, about.
+double import_steps(const ImportU3mOptions& options);
+
 /// Views of objects as a data set for registration [mian2006novel]: views/<view>.ply with faces, truth/<pair>.xf, and
 /// pairs.csv with the attributes model, source_view, target_view and overlap (percent, overlap_share within 2 pr).
 ///
