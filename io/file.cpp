@@ -52,8 +52,11 @@ bool is_temporary(const fs::path& name) {
 mode_t mode_for(const fs::path& place) {
   struct stat status;
   if (::stat(place.c_str(), &status) == 0) return status.st_mode & 07777;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
+  static const mode_t mask = [] {  // once: between the two calls other threads would write without it
+    const mode_t found = ::umask(0);
+    ::umask(found);
+    return found;
+  }();
   return 0666 & ~mask;
 }
 
