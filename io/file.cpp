@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <system_error>
 
 #include "kernel/error.h"
@@ -52,11 +53,10 @@ bool is_temporary(const fs::path& name) {
 mode_t mode_for(const fs::path& place) {
   struct stat status;
   if (::stat(place.c_str(), &status) == 0) return status.st_mode & 07777;
-  static const mode_t mask = [] {  // once: between the two calls other threads would write without it
-    const mode_t found = ::umask(0);
-    ::umask(found);
-    return found;
-  }();
+  static std::mutex asking;  // between the two calls another thread would find none
+  const std::lock_guard<std::mutex> lock(asking);
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
   return 0666 & ~mask;
 }
 

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 #include <vector>
-
-#include <algorithm>
 
 #include "kernel/random.h"
 #include "kernel/surface/resolution.h"
