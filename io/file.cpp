@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <system_error>
 
 #include "kernel/error.h"
@@ -52,6 +53,8 @@ bool is_temporary(const fs::path& name) {
 mode_t mode_for(const fs::path& place) {
   struct stat status;
   if (::stat(place.c_str(), &status) == 0) return status.st_mode & 07777;
+  static std::mutex asking;  // between the two calls another thread would find none
+  const std::lock_guard<std::mutex> lock(asking);
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return 0666 & ~mask;

@@ -9,6 +9,7 @@
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
+#include <mutex>
 #include <tuple>
 #include <vector>
 
@@ -107,6 +108,9 @@ int orient(Triangles& triangles) {
 
 /// Builds the half-edges and counts what they cannot take.
 HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
+  // OpenMesh's error stream is one for all threads, and neither its making nor its use is safe among them.
+  static std::mutex error_stream;
+  const std::lock_guard<std::mutex> lock(error_stream);
   HalfEdgeMesh half;
   for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
     half.add_vertex({mesh.vertices(row, 0), mesh.vertices(row, 1), mesh.vertices(row, 2)});

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
+#include <vector>
 
 #include "kernel/random.h"
 #include "kernel/surface/resolution.h"
@@ -227,6 +229,19 @@ TEST(DistinctPoints, SortsAndDropsCopies) {
   EXPECT_EQ(distinct_points(Points::Ones(9, 3)).rows(), 1);
   EXPECT_EQ(distinct_points(points_of({{0.0, 1, 1}, {-0.0, 1, 1}})).rows(), 1);
   EXPECT_EQ(distinct_points(points_of({{1, 1, 1}, {1 + 1e-15, 1, 1}})).rows(), 2);
+}
+
+TEST(VertexRings, AreTheSameFromManyThreadsAtOnce) {
+  const Mesh mesh = testing::bumpy_sphere(3, 1);
+  const auto expected = vertex_rings(mesh);
+  std::vector<std::vector<Indices>> found(8);
+  std::vector<std::thread> threads;
+  for (auto& rings : found)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20; ++i) rings = vertex_rings(mesh);
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& rings : found) EXPECT_EQ(rings, expected);
 }
 
 }  // namespace
