@@ -37,7 +37,7 @@ struct ExperimentInfo {
 struct StudyPair {
   std::string source, target, truth;                   ///< files; the truth may be empty
   double resolution = 0;                               ///< mesh units per pr that the pair was judged with
-  std::optional<int> source_points, source_keypoints;  ///< of the source's surface, where the run says it
+  std::optional<int> source_points = {}, source_keypoints = {};  ///< of the source's surface, where the run says it
 };
 
 /// A folder that `corral evaluate` made: manifest.json, records.csv, summary.csv, selections/.
