@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 #include <regex>
 
 #include "apps/experiment/run_folder.h"
 #include "apps/experiment/study.h"
+#include "apps/stopwatch.h"
 #include "kernel/number_text.h"
 #include "tests/apps/small_study.h"
 
@@ -107,14 +107,14 @@ TEST_F(Evaluate, JobsCacheAndOrderDoNotMatter) {
   EXPECT_EQ(content("one"), content("cached"));
 }
 
-// Killed at random moments and called again, the run ends as if nothing had been.
+// Killed at some moments and called again, the run ends as if nothing had been.
 TEST_F(Evaluate, GoesOnAfterBeingKilled) {
+  Stopwatch watch;
   ASSERT_EQ(evaluate("-o whole").status, 0);
-  std::mt19937 engine(std::random_device{}());
+  const double span = watch.lap_ms() / 1000;
   int killed = 0;
-  for (int call = 0; call < 8; ++call) {
-    const double seconds = std::uniform_real_distribution<double>(0.005, 0.15)(engine);
-    const std::string line = "cd '" + (place_ / "") + "' && timeout -s KILL " + std::to_string(seconds) +
+  for (int call = 1; call <= 8; ++call) {
+    const std::string line = "cd '" + (place_ / "") + "' && timeout -s KILL " + std::to_string(span * call / 16) +
                              " '" CORRAL_PROGRAM "' evaluate small.toml --data data -o cut --jobs 2 >log 2>&1";
     killed += std::system(line.c_str()) != 0;
   }
