@@ -4,6 +4,7 @@
 #include <new>
 
 #include "apps/commands/commands.h"
+#include "apps/experiment/build_info.h"
 #include "apps/report.h"
 #include "kernel/error.h"
 
@@ -36,7 +37,8 @@ int main(int argc, char** argv) {
   CLI::App app("Corral: which 3D correspondence grouper should I use, and how well does the surface align if I do?",
                "corral");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "corral " CORRAL_VERSION);
+  const corral::BuildInfo build = corral::build_info();
+  app.set_version_flag("--version", "corral " + build.version + ", commit " + build.commit);
   app.footer(
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded so, 1 anything else.\n"
       "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest "

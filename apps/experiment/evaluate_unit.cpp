@@ -17,12 +17,13 @@
 namespace corral {
 namespace {
 
-/// Part of every key, to be changed with whatever makes something else of the same input; a new version of the program makes
+/// Part of every key, to be changed with whatever makes something else of the same input; another commit of the program makes
 /// everything anew too.
 constexpr char kFormat[] = "corral study 1";
 
 std::string key_of(const std::vector<std::string>& parts) {
-  std::string text = kFormat + ("\n" + build_info().version);
+  static const std::string program = "\n" + build_info().version + " " + build_info().commit;
+  std::string text = kFormat + program;
   for (const std::string& part : parts) text += "\n" + part;
   return content_hash(text);
 }

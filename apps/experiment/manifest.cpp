@@ -134,16 +134,19 @@ void check_same_run(const std::string& folder, const WorkList& list, const Input
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   Json manifest;
-  std::string version, experiments, data;
+  std::string version, commit, experiments, data;
   try {
     manifest = Json::parse(read_file(path));
     version = manifest.at("program").at("version");
+    commit = manifest.at("program").at("commit");
     experiments = manifest.at("experiments_hash");
     data = manifest.at("inputs_hash");
   } catch (const Json::exception& error) {
     throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
   }
-  const std::string other = version != build_info().version            ? "by version " + version + " of the program"
+  const BuildInfo build = build_info();
+  const std::string other = version != build.version                   ? "by version " + version + " of the program"
+                            : commit != build.commit                   ? "by commit " + commit + " of the program"
                             : experiments != hash_of_experiments(list) ? "from other experiments or settings"
                             : data != hash_of_inputs(list, inputs)     ? "from other data"
                                                                        : "";
