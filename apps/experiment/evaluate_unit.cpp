@@ -49,7 +49,7 @@ PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   if (!errors) return {};
   PoseScores scores{errors->rotation_error_deg, errors->translation_error_pr, std::nullopt, std::nullopt,
                     errors->add_share};
-  if (errors->points) scores.rmse_pr = errors->points->mean_pr, scores.rms_pr = errors->points->rmse_pr;
+  if (errors->points) scores.mean_error_pr = errors->points->mean_pr, scores.rmse_pr = errors->points->rmse_pr;
   return scores;
 }
 

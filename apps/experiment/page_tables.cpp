@@ -146,9 +146,9 @@ void add_record(Json& columns, Words& words, int run, const StudyRecord& record)
   columns["precision"].push_back(rounded(record.precision));
   columns["recall"].push_back(rounded(record.recall));
   columns["f1"].push_back(rounded(record.f1));
-  columns["initial_rmse_pr"].push_back(rounded(record.initial.rmse_pr));
-  columns["refined_rmse_pr"].push_back(rounded(record.refined.rmse_pr));
-  columns["dense_rmse_pr"].push_back(rounded(record.dense.rmse_pr));
+  columns["initial_mean_error_pr"].push_back(rounded(record.initial.mean_error_pr));
+  columns["refined_mean_error_pr"].push_back(rounded(record.refined.mean_error_pr));
+  columns["dense_mean_error_pr"].push_back(rounded(record.dense.mean_error_pr));
   columns["rotation_error_deg"].push_back(rounded(record.refined.rotation_error_deg));
   columns["translation_error_pr"].push_back(rounded(record.refined.translation_error_pr));
   columns["time_ms"].push_back(rounded(record.time_ms));

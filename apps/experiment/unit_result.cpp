@@ -19,8 +19,8 @@ std::optional<double> number_of(const Json& json) {
 }
 
 Json to_json(const PoseScores& scores) {
-  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.rmse_pr),
-          json_of(scores.rms_pr), json_of(scores.add_share)};
+  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.mean_error_pr),
+          json_of(scores.rmse_pr), json_of(scores.add_share)};
 }
 
 PoseScores pose_scores_of(const Json& json) {

@@ -94,7 +94,7 @@ TEST_F(Evaluate, AgreesWithRun) {
       if (record.pair == "m2-0.25" && record.method == method["method"] && record.method != "ransac") {
         ++compared;
         EXPECT_EQ(*record.precision, method["precision"]);
-        EXPECT_EQ(*record.refined.rms_pr, method["rmse_pr"]) << method;
+        EXPECT_EQ(*record.refined.rmse_pr, method["rmse_pr"]) << method;
       }
   EXPECT_EQ(compared, 6);
 }
@@ -176,7 +176,7 @@ TEST_F(Evaluate, APairWithoutTruthIsGroupedButNotScored) {
   for (const StudyRecord& record : read_run(place_ / "run").records)
     if (record.pair == "m1-0.05") {
       EXPECT_TRUE(record.selected);
-      EXPECT_FALSE(record.true_matches || record.precision || record.refined.rmse_pr);
+      EXPECT_FALSE(record.true_matches || record.precision || record.refined.mean_error_pr);
     }
   const CsvTable summary = read_csv(place_ / "run/summary.csv");
   EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "1");
@@ -211,7 +211,7 @@ TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
 TEST_F(Evaluate, DenseFillsItsOwnColumns) {
   ASSERT_EQ(evaluate("-o run --dense").status, 0);
   for (const StudyRecord& record : read_run(place_ / "run").records)
-    EXPECT_EQ(record.dense.rmse_pr.has_value(), record.refined.rmse_pr.has_value()) << record.pair << record.method;
+    EXPECT_EQ(record.dense.mean_error_pr.has_value(), record.refined.mean_error_pr.has_value()) << record.pair << record.method;
 }
 
 // The threshold is for scoring alone: the same selections at all of them, and no precision that falls as it rises.

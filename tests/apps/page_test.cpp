@@ -100,8 +100,8 @@ TEST_F(Page, HoldsEveryRecord) {
     EXPECT_EQ(word("method", row), records[row].method);
     EXPECT_EQ(word("status", row), records[row].status);
     EXPECT_EQ(page["records"]["selected"][row].is_null(), !records[row].selected.has_value());
-    if (records[row].refined.rmse_pr) {
-      EXPECT_NEAR(page["records"]["refined_rmse_pr"][row], *records[row].refined.rmse_pr, 1e-4);
+    if (records[row].refined.mean_error_pr) {
+      EXPECT_NEAR(page["records"]["refined_mean_error_pr"][row], *records[row].refined.mean_error_pr, 1e-4);
     }
   }
 }
