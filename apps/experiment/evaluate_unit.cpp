@@ -19,7 +19,7 @@ namespace {
 
 /// Part of every key, to be changed with whatever makes something else of the same input; a new version of the program makes
 /// everything anew too.
-constexpr char kFormat[] = "corral study 1";
+constexpr char kFormat[] = "corral study 2";
 
 std::string key_of(const std::vector<std::string>& parts) {
   std::string text = kFormat + ("\n" + build_info().version);
@@ -36,6 +36,12 @@ Descriptors shared_descriptors(const Mesh& mesh, const std::string& hash, const 
   Descriptors descriptors = describe_surface(mesh, resolution, settings).descriptors;
   store.put(key, descriptors);
   return descriptors;
+}
+
+/// How many there were to describe.
+int keypoints_of(const Descriptors& descriptors) {
+  return static_cast<int>(descriptors.vertices.size()) + descriptors.dropped_small_support +
+         descriptors.dropped_no_frame + descriptors.dropped_no_histogram;
 }
 
 /// Statuses are cells of a table.
@@ -60,7 +66,8 @@ class PairStudy {
       : unit_(work.unit),
         source_(read_surface(unit_.pair.source)),
         target_(read_surface(unit_.pair.target)),
-        matches_(unit_matches(work, source_, target_)) {
+        stored_(unit_matches(work, source_, target_)),
+        matches_(stored_.matches) {
     if (unit_.pair.truth.empty()) return;
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
@@ -75,6 +82,8 @@ class PairStudy {
     }
     UnitResult result;
     result.resolution = matches_.resolution;
+    result.source_points = static_cast<int>(source_.vertices.rows());
+    result.source_keypoints = stored_.source_keypoints;
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
@@ -157,7 +166,8 @@ class PairStudy {
 
   const WorkUnit& unit_;
   const Mesh source_, target_;
-  const CorrespondenceSet matches_;
+  const StoredMatches stored_;
+  const CorrespondenceSet& matches_;
   std::optional<PairTruth> truth_;
   std::vector<std::vector<bool>> labels_;  ///< at each threshold
   std::vector<MethodRecord> records_;      ///< one for each task
@@ -175,7 +185,7 @@ std::string unit_key(const WorkUnit& unit, const InputHashes& inputs) {
                  hash_of(inputs, unit.pair.truth), unit_text(unit)});
 }
 
-CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
+StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
   const WorkUnit& unit = work.unit;
   const std::string source_hash = hash_of(work.inputs, unit.pair.source),
                     target_hash = hash_of(work.inputs, unit.pair.target);
@@ -193,9 +203,10 @@ CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const M
   };
   const Descriptors on_source = describe(source, source_hash, unit.shares_source);
   const Descriptors on_target = describe(target, target_hash, unit.shares_target);
-  CorrespondenceSet matches = match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching);
-  work.store.put(key, matches);
-  return matches;
+  const StoredMatches made{match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching),
+                           keypoints_of(on_source)};
+  work.store.put(key, made);
+  return made;
 }
 
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) {
