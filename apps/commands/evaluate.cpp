@@ -37,7 +37,8 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
     cell.pairs += row.pairs, cell.excluded += row.excluded, cell.empty += row.empty, cell.failed += row.failed;
     if (row.pairs == 0) continue;
     ++cell.levels;
-    cell.precision += *row.precision, cell.recall += *row.recall, cell.f1 += *row.f1, cell.success += *row.success;
+    cell.precision += row.precision->mean, cell.recall += row.recall->mean, cell.f1 += row.f1->mean,
+        cell.success += row.success->mean;
   }
   TextTable table(
       {"experiment", "method", "pairs", "excluded", "empty", "failed", "precision", "recall", "F1", "success"});
@@ -51,7 +52,8 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
   return table.str() +
          "Means over the levels of an experiment, at each over its pairs; an empty selection has precision and recall "
          "0, pairs\n"
-         "without right matches are excluded. success: refined RMSE of at most 5 pr. Every level is in summary.csv.\n";
+         "without right matches are excluded. success: refined mean error of at most 5 pr. Every level is in "
+         "summary.csv.\n";
 }
 
 std::string times_text(const std::vector<TimeRow>& rows) {

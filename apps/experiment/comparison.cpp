@@ -98,14 +98,10 @@ std::vector<LevelMean> level_means(const ExperimentTable& table, const std::vect
                                    Metric metric) {
   std::vector<LevelMean> means;
   for (const LevelTable& level : table.levels)
-    for (const std::string& method : methods) {
-      const auto found = level.methods.find(method);
-      if (found == level.methods.end()) continue;
-      const std::vector<double> numbers = present(metric_column(found->second, metric));
-      if (numbers.empty()) continue;
-      const std::uint64_t seed = seed_of(table.info.name, level.level.label + " " + method);
-      means.push_back({level.level.label, method, static_cast<int>(numbers.size()), bootstrap_mean(numbers, seed)});
-    }
+    for (const std::string& method : methods)
+      if (const auto mean = level_mean(table.info.name, level, method, metric))
+        means.push_back(
+            {level.level.label, method, present_in(metric_column(level.methods.at(method), metric)), *mean});
   return means;
 }
 
@@ -134,6 +130,15 @@ const RowNumbers& metric_column(const MethodColumns& columns, Metric metric) {
     default:
       return columns.f1;
   }
+}
+
+std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
+                                       const std::string& method, Metric metric) {
+  const auto found = level.methods.find(method);
+  if (found == level.methods.end()) return std::nullopt;
+  const std::vector<double> numbers = present(metric_column(found->second, metric));
+  if (numbers.empty()) return std::nullopt;
+  return bootstrap_mean(numbers, seed_of(experiment, level.level.label + " " + method));
 }
 
 MethodComparison compare_methods(const ExperimentTable& table, Metric metric) {

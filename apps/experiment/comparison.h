@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct MethodPair {
   double adjusted_p = 1;    ///< Holm's, among all pairs of methods of the experiment
   bool is_exact = true;     ///< not by the normal approximation
 };
+
+/// The mean of a method at a level, over all pairs that count there; absent without any. Deterministic: its interval
+/// depends on the numbers and on the names of experiment, level and method.
+std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
+                                       const std::string& method, Metric metric);
 
 /// A method at a level.
 struct LevelMean {

@@ -163,9 +163,10 @@ void ContentStore::put(const std::string& key, const Descriptors& descriptors) c
   save(key, writer.bytes());
 }
 
-std::optional<CorrespondenceSet> ContentStore::matches(const std::string& key) const {
-  return read_whole<CorrespondenceSet>(load(key), [](ByteReader& reader) {
-    CorrespondenceSet found;
+std::optional<StoredMatches> ContentStore::matches(const std::string& key) const {
+  return read_whole<StoredMatches>(load(key), [](ByteReader& reader) {
+    StoredMatches stored;
+    CorrespondenceSet& found = stored.matches;
     found.source_points = get_matrix<Points>(reader, 3);
     found.target_points = get_matrix<Points>(reader, 3);
     found.source_frames = get_frames(reader);
@@ -179,11 +180,13 @@ std::optional<CorrespondenceSet> ContentStore::matches(const std::string& key) c
     for (double& coordinate : centroid) coordinate = reader.number();
     found.source_centroid = centroid;
     found.validate();
-    return found;
+    stored.source_keypoints = static_cast<int>(reader.integer());
+    return stored;
   });
 }
 
-void ContentStore::put(const std::string& key, const CorrespondenceSet& matches) const {
+void ContentStore::put(const std::string& key, const StoredMatches& stored) const {
+  const CorrespondenceSet& matches = stored.matches;
   ByteWriter writer;
   put_matrix(writer, matches.source_points);
   put_matrix(writer, matches.target_points);
@@ -195,6 +198,7 @@ void ContentStore::put(const std::string& key, const CorrespondenceSet& matches)
   put_matrix(writer, matches.second_feature_distance);
   writer.put(matches.resolution);
   for (const double coordinate : matches.source_centroid_or_mean()) writer.put(coordinate);
+  writer.put(static_cast<std::int64_t>(stored.source_keypoints));
   save(key, writer.bytes());
 }
 

@@ -13,6 +13,12 @@ namespace corral {
 /// 32 hexadecimal digits that differ where contents differ (a 128-bit hash; not against those who forge).
 std::string content_hash(const std::string& content);
 
+/// The matches of a pair, and how many keypoints they were looked for from.
+struct StoredMatches {
+  CorrespondenceSet matches;
+  int source_keypoints = 0;
+};
+
 /// Intermediate results by the hash of all that they depend on. Whatever is missing, damaged or could not be written is absent,
 /// and is made anew.
 class ContentStore {
@@ -20,9 +26,9 @@ class ContentStore {
   explicit ContentStore(std::string folder);  ///< throws IoError if it cannot be created
 
   std::optional<Descriptors> descriptors(const std::string& key) const;
-  std::optional<CorrespondenceSet> matches(const std::string& key) const;
+  std::optional<StoredMatches> matches(const std::string& key) const;
   void put(const std::string& key, const Descriptors& descriptors) const;
-  void put(const std::string& key, const CorrespondenceSet& matches) const;
+  void put(const std::string& key, const StoredMatches& stored) const;
 
  private:
   std::optional<std::string> load(const std::string& key) const;

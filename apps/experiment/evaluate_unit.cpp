@@ -19,7 +19,7 @@ namespace {
 
 /// Part of every key, to be changed with whatever makes something else of the same input; another commit of the program makes
 /// everything anew too.
-constexpr char kFormat[] = "corral study 1";
+constexpr char kFormat[] = "corral study 2";
 
 std::string key_of(const std::vector<std::string>& parts) {
   static const std::string program = "\n" + build_info().version + " " + build_info().commit;
@@ -39,6 +39,12 @@ Descriptors shared_descriptors(const Mesh& mesh, const std::string& hash, const 
   return descriptors;
 }
 
+/// How many there were to describe.
+int keypoints_of(const Descriptors& descriptors) {
+  return static_cast<int>(descriptors.vertices.size()) + descriptors.dropped_small_support +
+         descriptors.dropped_no_frame + descriptors.dropped_no_histogram;
+}
+
 /// Statuses are cells of a table.
 std::string one_line(std::string text) {
   for (char& letter : text)
@@ -50,7 +56,7 @@ PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   if (!errors) return {};
   PoseScores scores{errors->rotation_error_deg, errors->translation_error_pr, std::nullopt, std::nullopt,
                     errors->add_share};
-  if (errors->points) scores.rmse_pr = errors->points->mean_pr, scores.rms_pr = errors->points->rmse_pr;
+  if (errors->points) scores.mean_error_pr = errors->points->mean_pr, scores.rmse_pr = errors->points->rmse_pr;
   return scores;
 }
 
@@ -61,7 +67,8 @@ class PairStudy {
       : unit_(work.unit),
         source_(read_surface(unit_.pair.source)),
         target_(read_surface(unit_.pair.target)),
-        matches_(unit_matches(work, source_, target_)) {
+        stored_(unit_matches(work, source_, target_)),
+        matches_(stored_.matches) {
     if (unit_.pair.truth.empty()) return;
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
@@ -76,6 +83,8 @@ class PairStudy {
     }
     UnitResult result;
     result.resolution = matches_.resolution;
+    result.source_points = static_cast<int>(source_.vertices.rows());
+    result.source_keypoints = stored_.source_keypoints;
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
@@ -158,7 +167,8 @@ class PairStudy {
 
   const WorkUnit& unit_;
   const Mesh source_, target_;
-  const CorrespondenceSet matches_;
+  const StoredMatches stored_;
+  const CorrespondenceSet& matches_;
   std::optional<PairTruth> truth_;
   std::vector<std::vector<bool>> labels_;  ///< at each threshold
   std::vector<MethodRecord> records_;      ///< one for each task
@@ -176,7 +186,7 @@ std::string unit_key(const WorkUnit& unit, const InputHashes& inputs) {
                  hash_of(inputs, unit.pair.truth), unit_text(unit)});
 }
 
-CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
+StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
   const WorkUnit& unit = work.unit;
   const std::string source_hash = hash_of(work.inputs, unit.pair.source),
                     target_hash = hash_of(work.inputs, unit.pair.target);
@@ -194,9 +204,10 @@ CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const M
   };
   const Descriptors on_source = describe(source, source_hash, unit.shares_source);
   const Descriptors on_target = describe(target, target_hash, unit.shares_target);
-  CorrespondenceSet matches = match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching);
-  work.store.put(key, matches);
-  return matches;
+  const StoredMatches made{match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching),
+                           keypoints_of(on_source)};
+  work.store.put(key, made);
+  return made;
 }
 
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) {

@@ -26,6 +26,7 @@ struct TaskResult {
 struct UnitResult {
   std::string failure;  ///< why the pair could not be matched; then nothing else is filled
   double resolution = 0;
+  int source_points = 0, source_keypoints = 0;  ///< vertices of the source, and those that were keypoints
   int matches = 0;
   bool has_truth = false;
   std::vector<int> true_matches;                   ///< at each threshold
@@ -50,7 +51,7 @@ struct UnitWork {
 };
 
 /// The table of a unit, from the store or made and stored. Throws IoError or InvalidInput.
-CorrespondenceSet unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target);
+StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target);
 
 /// Matches, groups, scores and refines. Whatever fails is in the result, but for want of memory (std::bad_alloc). `files`: gets the files of selections and poses.
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files);

@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <tuple>
 
+#include "apps/evaluate_pair.h"
 #include "apps/experiment/statistics.h"
 #include "io/line_reader.h"
 #include "kernel/error.h"
+#include "kernel/evaluation.h"
 
 namespace corral {
 namespace {
@@ -23,12 +24,9 @@ double number(const std::optional<Value>& value) {
   return value ? static_cast<double>(*value) : kAbsent;
 }
 
-/// A row of a level: a pair at a value of the swept attribute, so that one pair may give tables of several sizes.
-using RowKey = std::tuple<std::string, double>;
-RowKey row_key(const StudyRecord& record) { return {record.pair, record.value.value_or(0)}; }
-
-/// Where a record belongs.
+/// A record and where it belongs.
 struct Place {
+  const StudyRecord* record;
   std::size_t experiment, level, row;
 };
 
@@ -36,6 +34,23 @@ struct Place {
 struct Layout {
   std::vector<ExperimentTable> tables;
   std::vector<Place> places;
+};
+
+/// Tells the tables of a pair apart: by the value of the swept attribute and, where that is the same, by their order, as
+/// each begins with repeat 0 of a method.
+class RowKeys {
+ public:
+  using Key = std::tuple<std::string, std::string, std::string, double, int>;
+
+  Key of(const StudyRecord& record) {
+    const double value = record.value.value_or(0);
+    int& tables = tables_[{record.experiment, record.level, record.method, record.pair, value}];
+    if (record.repeat == 0 || tables == 0) ++tables;
+    return {record.experiment, record.level, record.pair, value, tables};
+  }
+
+ private:
+  std::map<std::tuple<std::string, std::string, std::string, std::string, double>, int> tables_;
 };
 
 Layout lay_out(const RunFolder& run) {
@@ -49,8 +64,10 @@ Layout lay_out(const RunFolder& run) {
       table.levels.emplace_back().level = level;
     }
   }
-  std::map<std::tuple<std::size_t, std::size_t, RowKey>, std::size_t> rows;
+  RowKeys keys;
+  std::map<RowKeys::Key, std::size_t> rows;
   for (const StudyRecord& record : run.records) {
+    if (record.level.empty()) continue;
     const auto found = levels.find({record.experiment, record.level});
     if (found == levels.end())
       throw IoError((std::filesystem::path(run.folder) / "records.csv").string(), "",
@@ -58,14 +75,15 @@ Layout lay_out(const RunFolder& run) {
                         " is not in manifest.json");
     const auto [experiment, level_index] = found->second;
     LevelTable& level = layout.tables[experiment].levels[level_index];
-    const auto [row, is_new] = rows.try_emplace({experiment, level_index, row_key(record)}, level.pairs.size());
+    const auto [row, is_new] = rows.try_emplace(keys.of(record), level.pairs.size());
     if (is_new) {
       level.pairs.push_back(record.pair);
+      level.selections.emplace_back();
       for (RowNumbers* column :
            {&level.value, &level.matches, &level.true_matches, &level.inlier_ratio, &level.frame_share})
         column->push_back(kAbsent);
     }
-    layout.places.push_back({experiment, level_index, row->second});
+    layout.places.push_back({&record, experiment, level_index, row->second});
   }
   return layout;
 }
@@ -75,6 +93,7 @@ void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record) {
   const auto fill = [&](RowNumbers& column, double value) {
     if (!std::isnan(value)) column[row] = value;
   };
+  if (!record.selection.empty()) level.selections[row] = record.selection;
   fill(level.value, number(record.value));
   fill(level.matches, number(record.matches));
   fill(level.true_matches, number(record.true_matches));
@@ -84,49 +103,71 @@ void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record) {
 }
 
 void count_rows(LevelTable& level, int least_true_matches) {
-  for (const double true_matches : level.true_matches) {
-    const bool failed = std::isnan(true_matches), excluded = true_matches < std::max(1, least_true_matches);
+  for (std::size_t row = 0; row < level.pairs.size(); ++row) {
+    const bool failed = std::isnan(level.matches[row]);
+    const bool excluded = !failed && !(level.true_matches[row] >= std::max(1, least_true_matches));
     level.failed += failed;
     level.excluded += excluded;
     level.counts.push_back(!failed && !excluded);
   }
 }
 
-std::vector<RowNumbers*> columns_of(MethodColumns& columns) {
-  return {&columns.precision, &columns.recall,  &columns.f1,      &columns.nonempty_precision,
-          &columns.selected,  &columns.correct, &columns.success, &columns.time_ms};
+double success_of(const PoseScores& scores) {
+  return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
 }
 
-/// In the order of columns_of.
-std::vector<double> numbers_of(const StudyRecord& record, bool counts) {
-  std::vector<double> numbers(8, kAbsent);
-  if (counts)
-    numbers = {record.precision.value_or(0),
-               record.recall.value_or(0),
-               record.f1.value_or(0),
-               number(record.precision),
-               static_cast<double>(record.selected.value_or(0)),
-               static_cast<double>(record.correct.value_or(0)),
-               record.refined.rmse_pr && *record.refined.rmse_pr <= kSuccessPr ? 1.0 : 0.0,
-               kAbsent};
-  numbers.back() = number(record.time_ms);
-  return numbers;
-}
+double error_of(const std::optional<double>& error) { return error.value_or(std::numeric_limits<double>::infinity()); }
 
-/// Sums over repeats and, of each number, how many there were.
-struct RepeatSums {
-  std::vector<RowNumbers> sums, seen;
-  std::set<std::size_t> empty;
+/// A column and the number that a record has for it.
+struct Column {
+  RowNumbers MethodColumns::*column;
+  double (*number)(const StudyRecord& record);
 };
 
-MethodColumns mean_columns(const RepeatSums& repeats) {
+const std::vector<Column> kColumns = {
+    {&MethodColumns::precision, [](const StudyRecord& record) { return record.precision.value_or(0); }},
+    {&MethodColumns::recall, [](const StudyRecord& record) { return record.recall.value_or(0); }},
+    {&MethodColumns::f1, [](const StudyRecord& record) { return record.f1.value_or(0); }},
+    {&MethodColumns::nonempty_precision, [](const StudyRecord& record) { return number(record.precision); }},
+    {&MethodColumns::selected, [](const StudyRecord& record) { return 1.0 * record.selected.value_or(0); }},
+    {&MethodColumns::correct, [](const StudyRecord& record) { return 1.0 * record.correct.value_or(0); }},
+    {&MethodColumns::success, [](const StudyRecord& record) { return success_of(record.refined); }},
+    {&MethodColumns::initial_success, [](const StudyRecord& record) { return success_of(record.initial); }},
+    {&MethodColumns::dense_success, [](const StudyRecord& record) { return success_of(record.dense); }},
+    {&MethodColumns::success_area,
+     [](const StudyRecord& record) { return success_area({record.refined.mean_error_pr}); }},
+    {&MethodColumns::rotation_error_deg,
+     [](const StudyRecord& record) { return error_of(record.refined.rotation_error_deg); }},
+    {&MethodColumns::translation_error_pr,
+     [](const StudyRecord& record) { return error_of(record.refined.translation_error_pr); }},
+    {&MethodColumns::mean_error_pr, [](const StudyRecord& record) { return error_of(record.refined.mean_error_pr); }},
+    {&MethodColumns::time_ms, [](const StudyRecord& record) { return number(record.time_ms); }}};
+
+/// The records of a method at a level: of each row its repeats.
+using MethodRecords = std::vector<std::vector<const StudyRecord*>>;
+
+MethodColumns columns_of(const LevelTable& level, const MethodRecords& records) {
   MethodColumns columns;
-  const std::vector<RowNumbers*> list = columns_of(columns);
-  for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t row = 0; row < repeats.sums[i].size(); ++row)
-      list[i]->push_back(repeats.seen[i][row] > 0 ? repeats.sums[i][row] / repeats.seen[i][row] : kAbsent);
-  columns.empty = static_cast<int>(repeats.empty.size());
+  for (std::size_t row = 0; row < records.size(); ++row) {
+    const std::vector<const StudyRecord*>& repeats = records[row];
+    const bool counts = level.counts[row] != 0;
+    for (const Column& column : kColumns) {
+      RowNumbers numbers;
+      if (counts || column.column == &MethodColumns::time_ms)
+        for (const StudyRecord* record : repeats) numbers.push_back(column.number(*record));
+      (columns.*column.column).push_back(mean_of(numbers));
+    }
+    const auto any = [&](const auto& is) { return counts && std::any_of(repeats.begin(), repeats.end(), is); };
+    columns.empty += any([](const StudyRecord* record) { return record->selected == 0; });
+    columns.failed += any([](const StudyRecord* record) { return !record->selected; });
+  }
   return columns;
+}
+
+/// Where no surface was laid on the other, that is no failure to do so.
+void drop_dense(ExperimentTable& table) {
+  for (LevelTable& level : table.levels)
+    for (auto& [method, columns] : level.methods) columns.dense_success.assign(level.pairs.size(), kAbsent);
 }
 
 double jaccard(const Indices& a, const Indices& b) {
@@ -151,34 +192,26 @@ int LevelTable::counted() const { return std::accumulate(counts.begin(), counts.
 
 std::vector<ExperimentTable> experiment_tables(const RunFolder& run) {
   Layout layout = lay_out(run);
-  for (std::size_t i = 0; i < run.records.size(); ++i) {
-    const Place& place = layout.places[i];
-    fill_row(layout.tables[place.experiment].levels[place.level], place.row, run.records[i]);
+  const auto level_of = [&](const Place& place) -> LevelTable& {
+    return layout.tables[place.experiment].levels[place.level];
+  };
+  for (const Place& place : layout.places) fill_row(level_of(place), place.row, *place.record);
+  std::vector<bool> has_dense(layout.tables.size(), false);
+  std::map<std::tuple<std::size_t, std::size_t, std::string>, MethodRecords> cells;
+  for (const Place& place : layout.places) {
+    MethodRecords& rows = cells[{place.experiment, place.level, place.record->method}];
+    rows.resize(level_of(place).pairs.size());
+    rows[place.row].push_back(place.record);
+    if (place.record->dense.rotation_error_deg) has_dense[place.experiment] = true;
   }
   for (ExperimentTable& table : layout.tables)
     for (LevelTable& level : table.levels) count_rows(level, table.info.least_true_matches);
-
-  std::map<std::tuple<std::size_t, std::size_t, std::string>, RepeatSums> sums;
-  for (std::size_t i = 0; i < run.records.size(); ++i) {
-    const StudyRecord& record = run.records[i];
-    const Place& place = layout.places[i];
-    const LevelTable& level = layout.tables[place.experiment].levels[place.level];
-    RepeatSums& repeats = sums[{place.experiment, place.level, record.method}];
-    const bool counts = level.counts[place.row] != 0;
-    const std::vector<double> numbers = numbers_of(record, counts);
-    repeats.sums.resize(numbers.size(), RowNumbers(level.pairs.size(), 0.0));
-    repeats.seen.resize(numbers.size(), RowNumbers(level.pairs.size(), 0.0));
-    for (std::size_t j = 0; j < numbers.size(); ++j) {
-      if (std::isnan(numbers[j])) continue;
-      repeats.sums[j][place.row] += numbers[j];
-      repeats.seen[j][place.row] += 1;
-    }
-    if (counts && record.selected.value_or(0) == 0) repeats.empty.insert(place.row);
+  for (const auto& [key, records] : cells) {
+    LevelTable& level = layout.tables[std::get<0>(key)].levels[std::get<1>(key)];
+    level.methods[std::get<2>(key)] = columns_of(level, records);
   }
-  for (const auto& [key, repeats] : sums) {
-    const auto& [experiment, level, method] = key;
-    layout.tables[experiment].levels[level].methods[method] = mean_columns(repeats);
-  }
+  for (std::size_t i = 0; i < layout.tables.size(); ++i)
+    if (!has_dense[i]) drop_dense(layout.tables[i]);
   return std::move(layout.tables);
 }
 
@@ -244,23 +277,16 @@ double pooled_recall(const LevelTable& level, const std::string& method) {
 
 std::vector<RowNumbers> selection_agreement(const RunFolder& run, const ExperimentTable& table,
                                             const std::vector<std::string>& methods) {
-  std::map<std::tuple<std::string, RowKey>, std::string> files;  // by level and row
-  for (const StudyRecord& record : run.records)
-    if (record.experiment == table.info.name && !record.selection.empty())
-      files[{record.level, row_key(record)}] = (std::filesystem::path(run.folder) / record.selection).string();
   std::map<std::string, double> known;
   std::vector<RowNumbers> agreements;
   for (const LevelTable& level : table.levels) {
     RowNumbers& column = agreements.emplace_back();
-    for (std::size_t row = 0; row < level.pairs.size(); ++row) {
-      const double value = std::isnan(level.value[row]) ? 0 : level.value[row];
-      const auto file = files.find({level.level.label, RowKey{level.pairs[row], value}});
-      column.push_back(kAbsent);
-      if (file == files.end()) continue;
-      const auto [entry, is_new] = known.try_emplace(file->second, kAbsent);
-      if (is_new && std::filesystem::exists(file->second))
-        entry->second = agreement(read_selections(file->second), methods);
-      column.back() = entry->second;
+    for (const std::string& selection : level.selections) {
+      const std::string file = (std::filesystem::path(run.folder) / selection).string();
+      const auto [entry, is_new] = known.try_emplace(selection, kAbsent);
+      if (is_new && !selection.empty() && std::filesystem::exists(file))
+        entry->second = agreement(read_selections(file), methods);
+      column.push_back(entry->second);
     }
   }
   return agreements;

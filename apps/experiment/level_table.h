@@ -12,25 +12,32 @@ namespace corral {
 /// One number for each row of a level; NaN where there is none, which every mean passes over.
 using RowNumbers = std::vector<double>;
 
-/// What a method made of the rows of a level, each the mean over its repeats. Excluded rows have no number but a time.
+/// What a method made of the rows of a level, each the mean over its repeats. Rows that do not count have no number but a
+/// time. Errors are infinite where there is no pose (in any repeat): for medians, which take it for the worst.
 struct MethodColumns {
   RowNumbers precision, recall, f1;  ///< 0 where nothing was selected, or the method gave no answer
   RowNumbers nonempty_precision;     ///< none where nothing was selected
-  RowNumbers selected, correct;
-  RowNumbers success;  ///< 1 if the refined pose has an RMSE of at most 5 pr
-  RowNumbers time_ms;  ///< of the grouping alone
-  int empty = 0;       ///< rows that count where a repeat selected nothing or gave no answer
+  RowNumbers selected, correct;      ///< 0 where the method gave no answer
+  RowNumbers success;                ///< 1 if the refined pose has a mean error of at most 5 pr; no pose has not
+  RowNumbers initial_success;        ///< the same of the pose before the refinement
+  RowNumbers dense_success;          ///< and of the dense one; none unless the experiment has dense poses
+  RowNumbers success_area;           ///< under the curve of success of the refined pose, 0 .. 5 pr
+  RowNumbers rotation_error_deg, translation_error_pr, mean_error_pr;  ///< refined
+  RowNumbers time_ms;                                                  ///< of the grouping alone
+  int empty = 0;   ///< rows that count where a repeat selected nothing
+  int failed = 0;  ///< rows that count where a repeat gave no answer
 };
 
-/// A level of an experiment: a row for each pair (for each size of it that the level has).
+/// A level of an experiment: a row for each pair (for each table of it that the level has: one pair may give several).
 struct LevelTable {
   StudyLevel level;
-  std::vector<std::string> pairs;  ///< of each row, in the order of the records
-  RowNumbers value;                ///< of the swept attribute
-  RowNumbers matches, true_matches, inlier_ratio, frame_share;
-  std::vector<char> counts;  ///< 1 unless the row is excluded or failed
-  int excluded = 0;          ///< too few true matches, for all methods alike
-  int failed = 0;            ///< could not be matched or judged: nobody knows its true matches
+  std::vector<std::string> pairs;                               ///< of each row, in the order of the records
+  std::vector<std::string> selections;                          ///< file below the run's folder, or empty
+  RowNumbers value;                                             ///< of the swept attribute
+  RowNumbers matches, true_matches, inlier_ratio, frame_share;  ///< of excluded rows too
+  std::vector<char> counts;                                     ///< 1 unless the row is excluded or failed
+  int excluded = 0;  ///< too few true matches, or no truth to know them by; for all methods alike
+  int failed = 0;    ///< pairs that could not be matched
   std::map<std::string, MethodColumns> methods;
 
   int counted() const;
@@ -42,9 +49,9 @@ struct ExperimentTable {
   std::vector<LevelTable> levels;
 };
 
-constexpr double kSuccessPr = 5;
-
-/// A table for each experiment of the run. Throws IoError if a record names an experiment or level that the manifest lacks.
+/// A table for each experiment of the run. Records without a level (pairs that failed where the number of matches is the
+/// level) are passed over. Repeats of a method on a pair stand one behind the other, from 0, as in records.csv.
+/// Throws    IoError if a record names an experiment or level that the manifest lacks.
 std::vector<ExperimentTable> experiment_tables(const RunFolder& run);
 
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.

@@ -63,17 +63,27 @@ Json inputs_json(const WorkList& list, const InputHashes& inputs) {
   return json;
 }
 
+/// A pair that is matched in several ways is spoken of as the first experiment that takes it has it.
 Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
   Json json = Json::object();
   const auto absolute = [](const std::string& file) {
     return file.empty() ? file : fs::absolute(file).lexically_normal().string();
   };
-  for (std::size_t i = 0; i < list.units.size(); ++i) {
-    const WorkUnit& unit = list.units[i];
-    json[unit.dataset + "/" + unit.pair.name] = {{"source", absolute(unit.pair.source)},
-                                                 {"target", absolute(unit.pair.target)},
-                                                 {"truth", absolute(unit.pair.truth)},
-                                                 {"resolution", i < results.size() ? results[i].resolution : 0}};
+  for (const StudySample& sample : list.samples) {
+    const auto unit_number = static_cast<std::size_t>(sample.unit);
+    const WorkUnit& unit = list.units[unit_number];
+    const std::string name = unit.dataset + "/" + unit.pair.name;
+    if (json.contains(name)) continue;
+    Json& pair = json[name] = {{"source", absolute(unit.pair.source)},
+                               {"target", absolute(unit.pair.target)},
+                               {"truth", absolute(unit.pair.truth)},
+                               {"resolution", 0}};
+    if (unit_number >= results.size()) continue;
+    const UnitResult& result = results[unit_number];
+    pair["resolution"] = result.resolution;
+    if (result.source_points == 0) continue;  // failed, or not looked at
+    pair["source_points"] = result.source_points;
+    pair["source_keypoints"] = result.source_keypoints;
   }
   return json;
 }

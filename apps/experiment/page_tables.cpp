@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "apps/figure/method_style.h"
 #include "io/csv_file.h"
 #include "io/file.h"
 #include "kernel/error.h"
@@ -146,12 +147,24 @@ void add_record(Json& columns, Words& words, int run, const StudyRecord& record)
   columns["precision"].push_back(rounded(record.precision));
   columns["recall"].push_back(rounded(record.recall));
   columns["f1"].push_back(rounded(record.f1));
-  columns["initial_rmse_pr"].push_back(rounded(record.initial.rmse_pr));
-  columns["refined_rmse_pr"].push_back(rounded(record.refined.rmse_pr));
-  columns["dense_rmse_pr"].push_back(rounded(record.dense.rmse_pr));
+  columns["initial_mean_error_pr"].push_back(rounded(record.initial.mean_error_pr));
+  columns["refined_mean_error_pr"].push_back(rounded(record.refined.mean_error_pr));
+  columns["dense_mean_error_pr"].push_back(rounded(record.dense.mean_error_pr));
   columns["rotation_error_deg"].push_back(rounded(record.refined.rotation_error_deg));
   columns["translation_error_pr"].push_back(rounded(record.refined.translation_error_pr));
   columns["time_ms"].push_back(rounded(record.time_ms));
+}
+
+/// How each method looks in the figures.
+Json styles_of(const std::vector<RunFolder>& runs) {
+  std::vector<std::string> methods = {"oracle", "floor"};
+  for (const RunFolder& run : runs)
+    for (const ExperimentInfo& experiment : run.experiments)
+      methods.insert(methods.end(), experiment.methods.begin(), experiment.methods.end());
+  Json styles = Json::object();
+  for (const auto& [method, style] : method_styles(methods))
+    styles[method] = {{"label", style.label}, {"color", style.color}, {"point", style.point}, {"dash", style.dash}};
+  return styles;
 }
 
 }  // namespace
@@ -168,7 +181,11 @@ Json page_tables(const std::vector<RunFolder>& runs) {
     for (const Json& experiment : experiments_of(run, static_cast<int>(number))) experiments.push_back(experiment);
     for (const StudyRecord& record : run.records) add_record(columns, words, static_cast<int>(number), record);
   }
-  return {{"runs", folders}, {"experiments", experiments}, {"words", words.list()}, {"records", columns}};
+  return {{"runs", folders},
+          {"experiments", experiments},
+          {"styles", styles_of(runs)},
+          {"words", words.list()},
+          {"records", columns}};
 }
 
 }  // namespace corral

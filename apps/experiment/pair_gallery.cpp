@@ -75,7 +75,7 @@ class PoseGrid {
         for (const auto& [stage, scores] : {std::pair<std::string, PoseScores>{"initial", record.initial},
                                             {"refined", record.refined},
                                             {"dense", record.dense}})
-          errors_[{record.method, stage}] = scores.rmse_pr;
+          errors_[{record.method, stage}] = scores.mean_error_pr;
   }
 
   std::vector<std::string> stages() const {
@@ -94,7 +94,7 @@ class PoseGrid {
                                               : "refined");
     if (pose == poses_.end()) return {title + ": no pose", std::nullopt};
     const auto error = errors_.find({method, stage});
-    if (error != errors_.end() && error->second) title += ": RMSE " + fixed(error->second, 2) + " pr";
+    if (error != errors_.end() && error->second) title += ": mean error " + fixed(error->second, 2) + " pr";
     return {title, pose->second};
   }
 

@@ -28,7 +28,8 @@ double quantile_of_sorted(const std::vector<double>& sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   if (below + 1 >= sorted.size()) return sorted.back();
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[below + 1] - sorted[below]);
+  const double share = place - static_cast<double>(below), step = sorted[below + 1] - sorted[below];
+  return share > 0 && step > 0 ? sorted[below] + share * step : sorted[below];  // values may be infinite
 }
 
 /// Where BCa reads the sorted resamples instead of at the level whose normal quantile is z.

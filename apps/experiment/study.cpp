@@ -154,13 +154,12 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   std::error_code ignored;
   if (!fs::exists(manifest, ignored)) write_file(manifest, manifest_text(list, inputs, {}, settings.command_line));
   const std::vector<UnitResult> results = Runner(list, inputs, settings, observer).run(settings.jobs);
-  const std::vector<StudyRecord> records = assemble_records(list, results);
-  std::vector<ExperimentInfo> experiments;
-  for (const Experiment& experiment : list.experiments) experiments.push_back(experiment.info);
+  RunFolder run{settings.run, {}, {}, assemble_records(list, results)};
+  for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
   StudyOutcome outcome{results.size(),
                        static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),
-                       summarize(experiments, records)};
-  write_files({{(folder / "records.csv").string(), records_text(records)},
+                       summarize(experiment_tables(run))};
+  write_files({{(folder / "records.csv").string(), records_text(run.records)},
                {(folder / "summary.csv").string(), summary_text(outcome.summary)},
                {manifest, manifest_text(list, inputs, results, settings.command_line)}});
   return outcome;

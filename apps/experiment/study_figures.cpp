@@ -137,17 +137,17 @@ void add_distributions(const RunFolder& run, const ExperimentInfo& info, StudyFi
   const auto records = counted_records(run, info);
   Panel curve = empty_panel(info, "success-curve");
   curve.axes = PanelAxes::Curve;
-  curve.x_axis = "RMSE at most (pr)";
+  curve.x_axis = "mean error at most (pr)";
   curve.y_axis = "share of pairs";
   curve.note = "Refined poses over the pairs of all levels; a missing pose is a failure.";
   curve.levels.clear();
   for (const double threshold : success_thresholds_pr()) curve.levels.push_back(to_text(threshold));
-  BoxPanel boxes{empty_panel(info, "rmse").name, curve.title, "RMSE (pr), no pose at the top", {}};
+  BoxPanel boxes{empty_panel(info, "mean-error").name, curve.title, "mean error (pr), no pose at the top", {}};
   for (const std::string& method : methods_of(info, true)) {
     const auto found = records.find(method);
     if (found == records.end()) continue;
     std::vector<std::optional<double>> errors;
-    for (const StudyRecord* record : found->second) errors.push_back(record->refined.rmse_pr);
+    for (const StudyRecord* record : found->second) errors.push_back(record->refined.mean_error_pr);
     boxes.boxes.push_back(box_of(method, errors));
     PanelSeries series{method, {}};
     for (const double share : success_curve(errors, success_thresholds_pr())) series.values.push_back({share, {}, {}});

@@ -17,7 +17,7 @@ struct StudyFigures {
 };
 
 /// For every experiment: a panel over its levels for each of precision, recall, F1 and the success of the alignments
-/// (initial, refined, dense) that has any value; the curve of success over thresholds and the distribution of RMSE,
+/// (initial, refined, dense) that has any value; the curve of success over thresholds and the distribution of mean errors,
 /// refined; and the time, where tables of chosen sizes were timed. Means are those of each run's summary.csv, with
 /// intervals where it has columns such as precision_low and precision_high; no average is taken here. Names are
 /// <experiment>-<dataset>-<measure>.

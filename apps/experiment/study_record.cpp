@@ -33,8 +33,8 @@ void visit_columns(Record& record, Visitor&& visit) {
   const auto visit_pose = [&](const std::string& pose, auto& scores) {
     visit(pose + "_rotation_error_deg", scores.rotation_error_deg);
     visit(pose + "_translation_error_pr", scores.translation_error_pr);
+    visit(pose + "_mean_error_pr", scores.mean_error_pr);
     visit(pose + "_rmse_pr", scores.rmse_pr);
-    visit(pose + "_rms_pr", scores.rms_pr);
     visit(pose + "_add_share", scores.add_share);
   };
   visit_pose("initial", record.initial);

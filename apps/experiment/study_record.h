@@ -10,9 +10,9 @@ namespace corral {
 /// A pose against the truth; what could not be had is absent.
 struct PoseScores {
   std::optional<double> rotation_error_deg, translation_error_pr;
-  std::optional<double> rmse_pr;    ///< mean distance of the overlap's points, as the field's RMSE curves take it
-  std::optional<double> rms_pr;     ///< root mean square of the same
-  std::optional<double> add_share;  ///< mean distance of all source vertices, in diameters of the source
+  std::optional<double> mean_error_pr;  ///< mean distance of the overlap's points, as the curves of success take it
+  std::optional<double> rmse_pr;        ///< root mean square of the same
+  std::optional<double> add_share;      ///< mean distance of all source vertices, in diameters of the source
 };
 
 /// A row of records.csv: one method on one pair at one level of one experiment. "oracle" (all right matches) and "floor"

@@ -37,7 +37,7 @@ std::vector<Table> find_tables(const WorkList& list, const InputHashes& inputs, 
   const auto wanted = static_cast<std::size_t>(experiment.tables);
   for (const WorkUnit& unit : list.units) {
     const Mesh source = read_surface(unit.pair.source), target = read_surface(unit.pair.target);
-    tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target)});
+    tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target).matches});
     if (static_cast<std::size_t>(std::count_if(tables.begin(), tables.end(), is_enough)) == wanted) break;
   }
   std::stable_sort(tables.begin(), tables.end(), [&](const Table& a, const Table& b) {

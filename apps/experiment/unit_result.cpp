@@ -19,8 +19,8 @@ std::optional<double> number_of(const Json& json) {
 }
 
 Json to_json(const PoseScores& scores) {
-  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.rmse_pr),
-          json_of(scores.rms_pr), json_of(scores.add_share)};
+  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.mean_error_pr),
+          json_of(scores.rmse_pr), json_of(scores.add_share)};
 }
 
 PoseScores pose_scores_of(const Json& json) {
@@ -54,6 +54,8 @@ UnitResult unit_of(const Json& json) {
   UnitResult result;
   result.failure = json.at("failure");
   result.resolution = json.at("resolution");
+  result.source_points = json.at("source_points");
+  result.source_keypoints = json.at("source_keypoints");
   result.matches = json.at("matches");
   result.has_truth = json.at("has_truth");
   result.true_matches = json.at("true_matches").get<std::vector<int>>();
@@ -73,6 +75,8 @@ std::string unit_result_text(const UnitResult& result) {
   for (const auto& share : result.frame_share) frames.push_back(json_of(share));
   return Json{{"failure", result.failure},
               {"resolution", result.resolution},
+              {"source_points", result.source_points},
+              {"source_keypoints", result.source_keypoints},
               {"matches", result.matches},
               {"has_truth", result.has_truth},
               {"true_matches", result.true_matches},

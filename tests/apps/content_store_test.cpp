@@ -40,9 +40,10 @@ TEST(ContentStore, GivesBackWhatWasPut) {
   EXPECT_EQ(found->frames, descriptors.frames);
   EXPECT_EQ(found->features, descriptors.features);
   const CorrespondenceSet matches = match_pair(mesh, move_mesh(mesh, random_motion(mesh, 1)), few_keypoints()).matches;
-  store.put("matches", matches);
+  store.put("matches", StoredMatches{matches, 77});
   ASSERT_TRUE(store.matches("matches"));
-  EXPECT_EQ(matches_text(*store.matches("matches")), matches_text(matches));
+  EXPECT_EQ(matches_text(store.matches("matches")->matches), matches_text(matches));
+  EXPECT_EQ(store.matches("matches")->source_keypoints, 77);
   EXPECT_FALSE(store.matches("key"));
   EXPECT_FALSE(store.descriptors("matches"));
 }
@@ -53,7 +54,7 @@ TEST(ContentStore, DamageIsAbsence) {
   const ContentStore store(folder.path());
   CorrespondenceSet matches;
   matches.source_points = matches.target_points = Points::Ones(3, 3);
-  store.put("key", matches);
+  store.put("key", StoredMatches{matches, 3});
   const std::string whole = text_of(folder / "key");
   ASSERT_TRUE(store.matches("key"));
   for (std::size_t at = 0; at < whole.size(); ++at) {

@@ -34,6 +34,8 @@ class Evaluate : public ::testing::Test {
       if (entry.is_regular_file())
         files[std::filesystem::relative(entry.path(), place_ / run).string()] = text_of(entry.path().string());
     files["summary.csv"] = place_.text(run + "/summary.csv");
+    for (const auto& [name, pair] : read_run(place_ / run).pairs)
+      files[name] = std::to_string(*pair.source_points) + " " + std::to_string(*pair.source_keypoints);
     files["records.csv"] = without_times(place_ / (run + "/records.csv"));
     return files;
   }
@@ -86,15 +88,20 @@ TEST_F(Evaluate, AgreesWithRun) {
       place_
           .corral(
               "run data/b3r/m2.ply data/b3r/m2-0.25.ply --truth data/b3r/m2-0.25.txt --json --detector "
-              "uniform --keypoint-radius-pr 2.5 --support-radius-pr 8 --resolution source")
+              "uniform --keypoint-radius-pr 2.5 --support-radius-pr 8 --resolution source -o ran")
           .json()["methods"];
+  const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
+  const StudyPair pair = read_run(place_ / "run").pairs.at("b3r/m2-0.25");
+  EXPECT_EQ(*pair.source_points, report["source"]["points"]);
+  EXPECT_EQ(*pair.source_keypoints, report["source"]["keypoints"]);
   int compared = 0;
   for (const StudyRecord& record : read_run(place_ / "run").records)
     for (const auto& method : methods)
       if (record.pair == "m2-0.25" && record.method == method["method"] && record.method != "ransac") {
         ++compared;
         EXPECT_EQ(*record.precision, method["precision"]);
-        EXPECT_EQ(*record.refined.rms_pr, method["rmse_pr"]) << method;
+        EXPECT_EQ(*record.refined.rmse_pr, method["rmse_pr"]) << method;
+        EXPECT_EQ(*record.refined.mean_error_pr, method["mean_error_pr"]) << method;
       }
   EXPECT_EQ(compared, 6);
 }
@@ -176,7 +183,7 @@ TEST_F(Evaluate, APairWithoutTruthIsGroupedButNotScored) {
   for (const StudyRecord& record : read_run(place_ / "run").records)
     if (record.pair == "m1-0.05") {
       EXPECT_TRUE(record.selected);
-      EXPECT_FALSE(record.true_matches || record.precision || record.refined.rmse_pr);
+      EXPECT_FALSE(record.true_matches || record.precision || record.refined.mean_error_pr);
     }
   const CsvTable summary = read_csv(place_ / "run/summary.csv");
   EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "1");
@@ -211,7 +218,8 @@ TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
 TEST_F(Evaluate, DenseFillsItsOwnColumns) {
   ASSERT_EQ(evaluate("-o run --dense").status, 0);
   for (const StudyRecord& record : read_run(place_ / "run").records)
-    EXPECT_EQ(record.dense.rmse_pr.has_value(), record.refined.rmse_pr.has_value()) << record.pair << record.method;
+    EXPECT_EQ(record.dense.mean_error_pr.has_value(), record.refined.mean_error_pr.has_value())
+        << record.pair << record.method;
 }
 
 // The threshold is for scoring alone: the same selections at all of them, and no precision that falls as it rises.

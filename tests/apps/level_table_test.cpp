@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "kernel/error.h"
+#include "kernel/evaluation.h"
 #include "tests/io/scratch.h"
 #include "tests/support/simulated_run.h"
 
@@ -45,9 +47,9 @@ RunFolder run_of(const std::vector<StudyRecord>& records) {
 
 TEST(LevelTable, AveragesAsTheDefinitionsSay) {
   StudyRecord aligned = record_of("a", "gc", 20, 10, 8);
-  aligned.refined.rmse_pr = 5.0;
+  aligned.refined.mean_error_pr = 5.0;
   StudyRecord missed = record_of("b", "gc", 40, 40, 10);
-  missed.refined.rmse_pr = 5.1;
+  missed.refined.mean_error_pr = 5.1;
   const StudyRecord empty = record_of("c", "gc", 10, 0, 0);    // precision 0, and counted
   const StudyRecord excluded = record_of("d", "gc", 0, 5, 0);  // no right match: for no method
   StudyRecord failed;                                          // could not be matched
@@ -100,7 +102,7 @@ TEST(LevelTable, KeepsTablesOfSeveralSizesOfAPairApart) {
   EXPECT_EQ(experiment_tables(run_of({small, large})).at(0).levels.at(0).counted(), 2);
 }
 
-TEST(LevelTable, CountsAMethodWithoutAnAnswerAsEmpty) {
+TEST(LevelTable, AMethodWithoutAnAnswerHasZeroAndIsNotEmpty) {
   StudyRecord refused = record_of("a", "st", 10, 0, 0);
   refused.status = "too large: needs 9 GB";
   refused.selected.reset();
@@ -108,8 +110,61 @@ TEST(LevelTable, CountsAMethodWithoutAnAnswerAsEmpty) {
   refused.f1.reset();
   const LevelTable level = experiment_tables(run_of({refused, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0);
   EXPECT_EQ(mean_of(level.methods.at("st").precision), 0);
-  EXPECT_EQ(level.methods.at("st").empty, 1);
+  EXPECT_EQ(level.methods.at("st").empty, 0);
+  EXPECT_EQ(level.methods.at("st").failed, 1);
   EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+  EXPECT_EQ(level.methods.at("gc").failed, 0);
+}
+
+TEST(LevelTable, APairWithoutATruthIsExcluded) {
+  StudyRecord unknown = record_of("a", "gc", 0, 5, 0);
+  unknown.true_matches.reset();
+  const LevelTable level = experiment_tables(run_of({unknown, record_of("b", "gc", 10, 1, 1)})).at(0).levels.at(0);
+  EXPECT_EQ(level.excluded, 1);
+  EXPECT_EQ(level.failed, 0);
+  EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+}
+
+// Keypoint radii may give tables of a pair that are equally large.
+TEST(LevelTable, KeepsTablesOfOneSizeOfAPairApart) {
+  std::vector<StudyRecord> records;
+  for (const int correct : {10, 0})
+    for (const char* method : {"gc", "ransac"})
+      for (const int repeat : {0, 1}) {
+        records.push_back(record_of("a", method, 10, 10, correct));
+        records.back().repeat = repeat;
+        records.back().value = 100;
+        records.back().selection = correct > 0 ? "first.csv" : "second.csv";
+      }
+  const LevelTable level = experiment_tables(run_of(records)).at(0).levels.at(0);
+  EXPECT_EQ(level.counted(), 2);
+  EXPECT_THAT(level.selections, ElementsAre("first.csv", "second.csv"));
+  for (const char* method : {"gc", "ransac"}) EXPECT_THAT(level.methods.at(method).precision, ElementsAre(1, 0));
+}
+
+// As where the number of matches is the level, and a pair has none as it failed.
+TEST(LevelTable, PassesOverARecordWithoutALevel) {
+  StudyRecord nowhere;
+  nowhere.experiment = "noise";
+  nowhere.pair = "b";
+  nowhere.method = "gc";
+  EXPECT_EQ(experiment_tables(run_of({nowhere, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0).pairs.size(), 1u);
+}
+
+TEST(LevelTable, PosesAreJudgedStageByStage) {
+  StudyRecord good = record_of("a", "gc", 10, 4, 4), none = record_of("b", "gc", 10, 4, 4);
+  good.initial.mean_error_pr = 6;
+  good.refined.mean_error_pr = 1;
+  good.refined.rotation_error_deg = 2;
+  const auto columns = [&] { return experiment_tables(run_of({good, none})).at(0).levels.at(0).methods.at("gc"); };
+  EXPECT_THAT(columns().initial_success, ElementsAre(0, 0));
+  EXPECT_THAT(columns().success, ElementsAre(1, 0));
+  EXPECT_THAT(columns().success_area, ElementsAre(DoubleEq(success_area({1.0})), 0));
+  EXPECT_THAT(columns().rotation_error_deg, ElementsAre(2, std::numeric_limits<double>::infinity()));
+  EXPECT_THAT(columns().dense_success, ElementsAre(IsNan(), IsNan()));  // nobody tried
+  good.dense.rotation_error_deg = 1;
+  good.dense.mean_error_pr = 1;
+  EXPECT_THAT(columns().dense_success, ElementsAre(1, 0));
 }
 
 TEST(LevelTable, RefusesALevelThatTheManifestLacks) {
@@ -124,6 +179,10 @@ TEST(LevelTable, MeansPassOverWhatIsAbsent) {
   EXPECT_EQ(mean_of({1, absent, 4}, {0, 1, 0, 2}), 2);
   EXPECT_EQ(median_of({5, absent, 1, 2}), 2);
   EXPECT_EQ(median_of({5, 1}), 3);
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(median_of({infinite, 1, 3}), 3);
+  EXPECT_EQ(median_of({infinite, 1}), infinite);
+  EXPECT_EQ(median_of({infinite, infinite, 1}), infinite);
   EXPECT_THAT(mean_of({absent}), IsNan());
   EXPECT_THAT(median_of({}), IsNan());
 }

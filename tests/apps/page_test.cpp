@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/experiment/page_scenes.h"
+#include "apps/figure/method_style.h"
 #include "io/file.h"
 #include "kernel/error.h"
 #include "kernel/surface/perturbation.h"
@@ -100,10 +101,18 @@ TEST_F(Page, HoldsEveryRecord) {
     EXPECT_EQ(word("method", row), records[row].method);
     EXPECT_EQ(word("status", row), records[row].status);
     EXPECT_EQ(page["records"]["selected"][row].is_null(), !records[row].selected.has_value());
-    if (records[row].refined.rmse_pr) {
-      EXPECT_NEAR(page["records"]["refined_rmse_pr"][row], *records[row].refined.rmse_pr, 1e-4);
+    if (records[row].refined.mean_error_pr) {
+      EXPECT_NEAR(page["records"]["refined_mean_error_pr"][row], *records[row].refined.mean_error_pr, 1e-4);
     }
   }
+}
+
+TEST_F(Page, MethodsLookAsInTheFigures) {
+  const Json styles = data()["styles"];
+  EXPECT_EQ(styles.size(), 4u);
+  for (const auto& [method, style] : method_styles({"ss", "gc", "oracle", "floor"}))
+    EXPECT_EQ(styles[method],
+              Json({{"label", style.label}, {"color", style.color}, {"point", style.point}, {"dash", style.dash}}));
 }
 
 TEST_F(Page, NothingFromTheDataIsMarkup) {

@@ -31,7 +31,7 @@ struct EmptyPath {
   std::string kept;
 };
 
-StudyRecord record_of(const std::string& pair, const std::string& method, std::optional<double> rmse_pr) {
+StudyRecord record_of(const std::string& pair, const std::string& method, std::optional<double> mean_error_pr) {
   StudyRecord record;
   record.experiment = "noise";
   record.dataset = "b3r";
@@ -41,7 +41,7 @@ StudyRecord record_of(const std::string& pair, const std::string& method, std::o
   record.status = "refined";
   record.matches = 10;
   record.true_matches = 5;
-  record.refined.rmse_pr = rmse_pr;
+  record.refined.mean_error_pr = mean_error_pr;
   return record;
 }
 
@@ -182,7 +182,7 @@ TEST(Report, WithoutGnuplotEverythingElseIsThere) {
   EXPECT_EQ(testing::lines_in(outcome.err), 1U);
   for (const char* ending : {".csv", ".gp", ".tex"})
     EXPECT_TRUE(std::filesystem::exists(place / ("out/noise-b3r-precision" + std::string(ending)))) << ending;
-  EXPECT_TRUE(std::filesystem::exists(place / "out/noise-b3r-rmse.csv"));
+  EXPECT_TRUE(std::filesystem::exists(place / "out/noise-b3r-mean-error.csv"));
 }
 
 TEST(Report, SameRunSameBytes) {
@@ -195,7 +195,7 @@ TEST(Report, SameRunSameBytes) {
     EXPECT_EQ(outcome.err, "");
   }
   for (const std::string name :
-       {"noise-b3r-precision", "noise-b3r-recall", "noise-b3r-success-curve", "noise-b3r-rmse"})
+       {"noise-b3r-precision", "noise-b3r-recall", "noise-b3r-success-curve", "noise-b3r-mean-error"})
     for (const char* ending : {".pdf", ".svg"}) {
       EXPECT_EQ(place.text("one/" + name + ending), place.text("two/" + name + ending)) << name << ending;
       EXPECT_GT(place.text("one/" + name + ending).size(), 2000U);

@@ -45,7 +45,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
   EXPECT_EQ(record_line(read[0]), record_line(full));
   EXPECT_EQ(record_line(read[1]), record_line({}));
   EXPECT_EQ(read[0].refined.add_share, 5e-324);
-  EXPECT_FALSE(read[0].dense.rmse_pr);
+  EXPECT_FALSE(read[0].dense.mean_error_pr);
 }
 
 TEST(StudyRecord, NamesWhatIsWrong) {

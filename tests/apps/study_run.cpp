@@ -22,7 +22,7 @@ PoseScores scores_of(const std::optional<PoseErrors>& errors) {
   if (!errors) return scores;
   scores.rotation_error_deg = errors->rotation_error_deg;
   scores.translation_error_pr = errors->translation_error_pr;
-  if (errors->points) scores.rmse_pr = errors->points->mean_pr;
+  if (errors->points) scores.mean_error_pr = errors->points->mean_pr;
   return scores;
 }
 
@@ -48,8 +48,12 @@ std::vector<StudyRecord> run_case(const std::string& folder, const ExperimentInf
                                   StudyPair& files) {
   make_folder(folder + "/meshes");
   make_folder(folder + "/selections");
-  files = {folder + "/meshes/" + pair.name + "-source.ply", folder + "/meshes/" + pair.name + "-target.ply",
-           folder + "/meshes/" + pair.name + ".txt", 1};
+  files = {folder + "/meshes/" + pair.name + "-source.ply",
+           folder + "/meshes/" + pair.name + "-target.ply",
+           folder + "/meshes/" + pair.name + ".txt",
+           1,
+           {},
+           {}};
   write_mesh(files.source, pair.source);
   write_mesh(files.target, pair.target);
   write_file(files.truth, transform_text(pair.truth));
@@ -100,7 +104,7 @@ std::string summary_line(const ExperimentInfo& experiment, const std::string& le
       precision += record.precision.value_or(0);
       recall += record.recall.value_or(0);
       f1 += record.f1.value_or(0);
-      successes += record.refined.rmse_pr && *record.refined.rmse_pr <= 5 ? 1 : 0;
+      successes += record.refined.mean_error_pr && *record.refined.mean_error_pr <= 5 ? 1 : 0;
     }
   }
   const auto mean = [&](double sum) { return pairs > 0 ? to_text(sum / pairs) : std::string(); };
@@ -117,7 +121,7 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
     levels.push_back({{"label", level.label}, {"low", level.low}, {"high", level.high}});
   std::vector<StudyRecord> records;
   for (const StudyCase& pair : cases) {
-    StudyPair files{"missing.ply", "missing.ply", "", 0};
+    StudyPair files{"missing.ply", "missing.ply", "", 0, {}, {}};
     std::vector<StudyRecord> found(experiment.methods.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       found[i].method = experiment.methods[i];

@@ -69,7 +69,7 @@ void add_experiment(RunFolder& run, const SimulatedExperiment& experiment) {
         record.selected = 100;
         record.correct = static_cast<int>(std::lround(100 * scores.precision));
         record.frame_share = 0.5;
-        record.refined.rmse_pr = scores.precision > 0.5 ? 1.0 : 20.0;
+        record.refined.mean_error_pr = scores.precision > 0.5 ? 1.0 : 20.0;
         record.selection = "selections/" + experiment.dataset + "/" + std::to_string(pair) + ".csv";
         StudyPair& files = run.pairs[experiment.dataset + "/" + record.pair];
         files.source = "model" + std::to_string(pair % 4) + ".ply";

@@ -45,33 +45,22 @@ for (const record of records) {
   record.excluded = isNumber(record.true_matches) && record.true_matches < least;
 }
 
-// Every grouper has one colour (Okabe and Ito's, for every kind of sight), one marker and one dash, in all of the page.
+// Every grouper has one colour, one marker and one dash: those of the figures, whose markers have gnuplot's numbers. Chart.js
+// knows no pentagons (14 and 15).
 const bounds = unique(data.experiments.flatMap(e => e.bounds));
 const methods = unique([...data.experiments.flatMap(e => e.methods), ...bounds]);
-const knownStyles = {
-  ss: {label: 'SS', color: '#000000', marker: 'circle', dash: [5, 3]},
-  nnsr: {label: 'NNSR', color: '#e69f00', marker: 'rect', dash: []},
-  ransac: {label: 'RANSAC', color: '#0072b2', marker: 'triangle', dash: []},
-  st: {label: 'ST', color: '#cc79a7', marker: 'triangle', rotation: 180, dash: [9, 3]},
-  gc: {label: 'GC', color: '#009e73', marker: 'rectRot', dash: []},
-  hough: {label: '3DHV', color: '#56b4e9', marker: 'star', dash: [6, 2, 1, 2]},
-  si: {label: 'SI', color: '#d55e00', marker: 'circle', open: true, dash: [3, 2]},
-  oracle: {label: 'oracle', color: '#888888', marker: 'line', dash: [2, 3]},
-  floor: {label: 'floor', color: '#888888', marker: 'line', dash: [7, 4]},
-};
-const furtherColors = ['#882255', '#999933', '#332288', '#aa4499', '#117733', '#661100', '#6699cc', '#aa4466'];
-const furtherMarkers = ['crossRot', 'cross', 'rectRounded', 'star', 'triangle'];
-const styles = new Map(methods.map(method => {
-  const place = methods.filter(m => !(m in knownStyles)).indexOf(method);
-  return [
-    method, knownStyles[method] || {
-      label: method,
-      color: furtherColors[place % 8],
-      marker: furtherMarkers[place % 5],
-      dash: place < 8 ? [] : [4, 2]
-    }
-  ];
-}));
+const markers = [
+  'line', 'cross', 'crossRot', 'star', 'rect', 'rect', 'circle', 'circle', 'triangle', 'triangle', 'triangle', 'triangle',
+  'rectRot', 'rectRot', 'rectRounded', 'star'
+];
+const styles = new Map(Object.entries(data.styles).map(([method, {label, color, point, dash}]) => [method, {
+  label,
+  color,
+  marker: markers[point],
+  rotation: point === 10 || point === 11 ? 180 : 0,
+  open: point >= 4 && point % 2 === 0,
+  dash: (dash.match(/\d+/g) || []).map(Number)
+}]));
 const labelOf = method => (styles.get(method) || {label: method}).label;
 
 /// Bytes of a base64 text.

@@ -64,8 +64,8 @@ const pairView = (() => {
     } else
       parts.push(`${groups.kept.length} kept, no truth to judge them · `);
     const stage = byId('stage').value;
-    if (record && isNumber(record[`${stage}_rmse_pr`]))
-      parts.push(`RMSE ${fixed(record[`${stage}_rmse_pr`], 2)} pr · `);
+    if (record && isNumber(record[`${stage}_mean_error_pr`]))
+      parts.push(`mean error ${fixed(record[`${stage}_mean_error_pr`], 2)} pr · `);
     if (!poseOf(scene, method, stage))
       parts.push(element('span', {class: 'bad'}, stage === 'truth' ? 'no truth' : 'no such pose'), ' · ');
     if (record)

@@ -47,7 +47,7 @@ const panels = (() => {
       borderWidth: 1.6,
       borderDash: style.dash,
       pointStyle: style.marker,
-      rotation: style.rotation || 0,
+      rotation: style.rotation,
       pointBorderColor: style.color,
       pointRadius: bounds.includes(method) ? 0 : 4,
       pointHoverRadius: 6,
@@ -210,7 +210,7 @@ const panels = (() => {
     if (style.open) pen.fillStyle = '#fff';
     if (style.marker !== 'line')
       Chart.helpers.drawPoint(
-          pen, {pointStyle: style.marker, rotation: style.rotation || 0, radius: 4.5, borderWidth: 1.5}, 15, 8);
+          pen, {pointStyle: style.marker, rotation: style.rotation, radius: 4.5, borderWidth: 1.5}, 15, 8);
     return canvas;
   }
 

@@ -19,17 +19,17 @@ const recordTable = (() => {
     {title: 'Precision', value: r => r.precision, decimals: 3},
     {title: 'Recall', value: r => r.recall, decimals: 3},
     {title: 'F1', value: r => r.f1, decimals: 3},
-    {title: 'RMSE (pr), initial', value: r => r.initial_rmse_pr, decimals: 2},
-    {title: 'refined', value: r => r.refined_rmse_pr, decimals: 2},
-    {title: 'dense', value: r => r.dense_rmse_pr, decimals: 2},
+    {title: 'Mean error (pr), initial', value: r => r.initial_mean_error_pr, decimals: 2},
+    {title: 'refined', value: r => r.refined_mean_error_pr, decimals: 2},
+    {title: 'dense', value: r => r.dense_mean_error_pr, decimals: 2},
     {title: 'Rotation (°)', value: r => r.rotation_error_deg, decimals: 2},
     {title: 'Time (ms)', value: r => r.time_ms, decimals: 2},
     {title: 'Status', text: true, value: r => r.excluded ? `excluded; ${r.status}` : r.status},
   ].filter(column => column.text || records.some(record => isNumber(column.value(record))));
 
   const outcomes = {
-    'success (RMSE up to 5 pr)': r => isNumber(r.refined_rmse_pr) && r.refined_rmse_pr <= 5,
-    'no success': r => !r.excluded && !(isNumber(r.refined_rmse_pr) && r.refined_rmse_pr <= 5),
+    'success (mean error up to 5 pr)': r => isNumber(r.refined_mean_error_pr) && r.refined_mean_error_pr <= 5,
+    'no success': r => !r.excluded && !(isNumber(r.refined_mean_error_pr) && r.refined_mean_error_pr <= 5),
     'empty selection': r => r.selected === 0,
     'excluded pair': r => r.excluded,
     'failed': r => r.status.startsWith('failed'),
