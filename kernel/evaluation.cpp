@@ -88,22 +88,22 @@ const std::vector<double>& success_thresholds_pr() {
   return thresholds;
 }
 
-std::vector<double> success_curve(const std::vector<std::optional<double>>& rmse_pr,
+std::vector<double> success_curve(const std::vector<std::optional<double>>& errors_pr,
                                   const std::vector<double>& thresholds_pr) {
-  if (rmse_pr.empty()) throw InvalidInput("success_curve", "rmse_pr", "0 pairs", "at least 1");
+  if (errors_pr.empty()) throw InvalidInput("success_curve", "errors_pr", "0 pairs", "at least 1");
   std::vector<double> shares;
   for (const double threshold : thresholds_pr) {
-    const auto registered =
-        std::count_if(rmse_pr.begin(), rmse_pr.end(), [&](const auto& error) { return error && *error <= threshold; });
-    shares.push_back(static_cast<double>(registered) / static_cast<double>(rmse_pr.size()));
+    const auto registered = std::count_if(errors_pr.begin(), errors_pr.end(),
+                                          [&](const auto& error) { return error && *error <= threshold; });
+    shares.push_back(static_cast<double>(registered) / static_cast<double>(errors_pr.size()));
   }
   return shares;
 }
 
-double success_area(const std::vector<std::optional<double>>& rmse_pr) {
+double success_area(const std::vector<std::optional<double>>& errors_pr) {
   std::vector<double> thresholds{0};
   thresholds.insert(thresholds.end(), success_thresholds_pr().begin(), success_thresholds_pr().end());
-  const std::vector<double> shares = success_curve(rmse_pr, thresholds);
+  const std::vector<double> shares = success_curve(errors_pr, thresholds);
   double area = 0;
   for (std::size_t i = 1; i < shares.size(); ++i)
     area += (thresholds[i] - thresholds[i - 1]) * (shares[i - 1] + shares[i]) / 2;

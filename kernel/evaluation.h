@@ -65,11 +65,11 @@ const std::vector<double>& success_thresholds_pr();
 ///
 /// Source    U3M's success curves; errors are PointError::mean_pr, as the published ones are.
 /// Throws    InvalidInput if there is no pair: a share of none is undefined.
-std::vector<double> success_curve(const std::vector<std::optional<double>>& rmse_pr,
+std::vector<double> success_curve(const std::vector<std::optional<double>>& errors_pr,
                                   const std::vector<double>& thresholds_pr = success_thresholds_pr());
 
 /// The area under the success curve, 0 (no pair registered) .. 1 (every error is 0): the trapezoid rule on its points at
 /// 0 and at success_thresholds_pr(), over the 5 pr that they span. Throws as success_curve.
-double success_area(const std::vector<std::optional<double>>& rmse_pr);
+double success_area(const std::vector<std::optional<double>>& errors_pr);
 
 }  // namespace corral

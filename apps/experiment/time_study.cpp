@@ -7,7 +7,9 @@
 #include <numeric>
 
 #include "apps/experiment/assemble.h"
+#include "apps/experiment/level_table.h"
 #include "apps/experiment/manifest.h"
+#include "apps/experiment/statistics.h"
 #include "apps/read_surface.h"
 #include "apps/stopwatch.h"
 #include "grouping/registry.h"
@@ -86,11 +88,9 @@ std::vector<TimeRow> time_rows(const Experiment& experiment, const std::vector<S
       for (const StudyRecord& record : records)
         if (record.level == level.label && record.method == method) times.push_back(*record.time_ms);
       if (times.empty()) continue;
-      std::sort(times.begin(), times.end());
       const auto runs = static_cast<int>(times.size());
-      rows.push_back({experiment.info.name, experiment.info.dataset, level.label, method, runs, quantile(times, 0.5),
-                      std::accumulate(times.begin(), times.end(), 0.0) / runs, quantile(times, 0.25),
-                      quantile(times, 0.75)});
+      rows.push_back({experiment.info.name, experiment.info.dataset, level.label, method, runs, quantile_of(times, 0.5),
+                      mean_of(times), quantile_of(times, 0.25), quantile_of(times, 0.75)});
     }
   return rows;
 }
@@ -106,13 +106,6 @@ std::string time_text(const std::vector<TimeRow>& rows) {
 }
 
 }  // namespace
-
-double quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed) {
   Indices rows(static_cast<std::size_t>(matches.size()));

@@ -29,7 +29,4 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
 /// So many rows of a table, drawn without repetition, in their order.
 CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed);
 
-/// A quantile of sorted values by linear interpolation between the two nearest: 0 the first, 1 the last.
-double quantile(const std::vector<double>& sorted, double share);
-
 }  // namespace corral

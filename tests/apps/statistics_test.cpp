@@ -140,6 +140,14 @@ TEST(Spearman, AgreesWithScipy) {
   EXPECT_TRUE(std::isnan(spearman({1, 2, 3}, {5, 5, 5})));
 }
 
+TEST(Quantile, IsLinearBetweenValues) {
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0), 1);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0.5), 2);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0.75), 3);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 1), 4);
+  EXPECT_EQ(quantile_of({7}, 0.25), 7);
+}
+
 TEST(Bootstrap, IsDeterministicAndHoldsItsMean) {
   const Values values = {0.1, 0.9, 0.4, 0.4, 0.8, 0.0, 0.3};
   const MeanInterval once = bootstrap_mean(values, 5), again = bootstrap_mean(values, 5);

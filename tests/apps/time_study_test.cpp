@@ -35,13 +35,5 @@ TEST(DrawRows, KeepsRowsWholeAndInOrder) {
   EXPECT_EQ(draw_rows(matches, size, 4).source_points, matches.source_points);
 }
 
-TEST(Quantile, IsLinearBetweenValues) {
-  EXPECT_EQ(quantile({1, 2, 4}, 0), 1);
-  EXPECT_EQ(quantile({1, 2, 4}, 0.5), 2);
-  EXPECT_EQ(quantile({1, 2, 4}, 0.75), 3);
-  EXPECT_EQ(quantile({1, 2, 4}, 1), 4);
-  EXPECT_EQ(quantile({7}, 0.25), 7);
-}
-
 }  // namespace
 }  // namespace corral
