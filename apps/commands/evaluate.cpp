@@ -94,8 +94,9 @@ int evaluate_pairs(const Settings& settings, const WorkList& list) {
     put("", Json{{"run", settings.study.run}, {"pairs", outcome.units}, {"failed", outcome.failed}});
   } else {
     put("", overview_text(outcome.summary));
-    say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed; the run is in " +
-        settings.study.run);
+    const std::string causes = outcome.failed > 0 ? " (records.csv says why)" : "";
+    say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed" + causes +
+        "; the run is in " + settings.study.run);
   }
   return outcome.failed > 0 ? kPartial : kOk;
 }
