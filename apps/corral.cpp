@@ -6,6 +6,7 @@
 #include "apps/commands/commands.h"
 #include "apps/experiment/build_info.h"
 #include "apps/report.h"
+#include "io/toml_file.h"
 #include "kernel/error.h"
 
 namespace {
@@ -29,6 +30,29 @@ int run_action(const corral::Action& action) {
     corral::say(std::string("corral: ") + error.what());
     return corral::kOtherFailure;
   }
+}
+
+/// What is wrong if a word stands where a command should and is none; else empty.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  std::string path = "corral";
+  for (int i = 1; i < argc && command->get_require_subcommand_min() > 0 && argv[i][0] != '-'; ++i) {
+    const CLI::App* next = nullptr;
+    std::vector<std::string> names;
+    for (const CLI::App* each : command->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(each->get_name());
+      if (each->get_name() == argv[i]) next = each;
+    }
+    if (!next) {
+      const std::string nearest = corral::nearest_name(argv[i], names);
+      return "unknown command '" + std::string(argv[i]) + "', " +
+             (nearest.empty() ? "expected one of those in " : "did you mean '" + nearest + "'? See ") + path +
+             " --help";
+    }
+    command = next;
+    path += " " + next->get_name();
+  }
+  return "";
 }
 
 }  // namespace
@@ -65,10 +89,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const std::string first = argc > 1 ? argv[1] : "-";
-    const auto is_first = [&](const CLI::App* command) { return command->get_name() == first; };
-    if (first[0] != '-' && app.get_subcommands(is_first).empty()) {
-      corral::say("corral: unknown command '" + first + "', expected one of those in corral --help");
+    const std::string unknown = unknown_command(app, argc, argv);
+    if (!unknown.empty()) {
+      corral::say("corral: " + unknown);
       return corral::kUsage;
     }
     return app.exit(error) == 0 ? corral::kOk : corral::kUsage;

@@ -86,6 +86,8 @@ Dataset read_dataset(const std::string& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(dataset.path(kRecipeName), ignored))
     throw IoError(folder, "", "is half made: its manifest is missing, run the command that makes it again to go on");
+  if (!std::filesystem::exists(path, ignored))
+    throw IoError(path, "", "does not exist, expected the folder of one data set, with dataset.toml and pairs.csv");
   const TomlTable table = TomlTable::read(path);
   table.only({"name", "kind", "units", "resolution", "provenance", "licence", "citation"});
   if (!table.text("name")) throw IoError(path, "", "the key name is missing, expected name = \"...\"");

@@ -103,7 +103,8 @@ std::string levels_text(const MethodComparison& comparison) {
 
 std::string to_text(const MethodComparison& comparison, const std::string& metric) {
   std::string text = comparison.experiment + ": " + metric + " on " + std::to_string(comparison.pairs) +
-                     " pairs (all levels; empty selections count as 0, pairs without true matches are left out)\n";
+                     (comparison.pairs == 1 ? " pair" : " pairs") +
+                     " (all levels; empty selections count as 0, pairs without true matches are left out)\n";
   if (comparison.means.empty()) return text + "nothing to compare\n\n";
   return text + means_text(comparison) + "\n" + tests_text(comparison, metric_of(metric)) +
          "\nBy level, with the 95 % interval\n" + levels_text(comparison) + "\n";
@@ -139,15 +140,17 @@ void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("compare", "Which differences between the groupers of a run are more than chance");
   auto settings = std::make_shared<Settings>();
   command->add_option("run", settings->run, "Folder of corral evaluate")->type_name("RUN")->required();
-  command->add_option("--metric", settings->metric, "f1, precision, recall or success (refined RMSE of at most 5 pr)")
+  command
+      ->add_option("--metric", settings->metric,
+                   "f1, precision, recall or success (refined mean error of at most 5 pr)")
       ->check(CLI::IsMember(metric_names()))
       ->capture_default_str();
   command->add_option("--experiment", settings->experiment, "Only this one")->type_name("NAME");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
-      "Means with bootstrap intervals over pairs, Friedman's test and average ranks with Nemenyi's critical "
-      "difference, "
-      "and for each two groupers Wilcoxon's signed-rank test (McNemar's for success) with Holm's adjustment.\n"
+      "Means with bootstrap intervals over pairs, Friedman's test and average ranks with Nemenyi's critical\n"
+      "difference, and for each two groupers Wilcoxon's signed-rank test (McNemar's for success) with Holm's\n"
+      "adjustment.\n"
       "Examples:\n  corral compare run --metric precision\n  corral compare run --metric success --experiment noise "
       "--json");
   command->callback([settings, &action] { action = [settings] { return compare(*settings); }; });

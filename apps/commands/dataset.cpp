@@ -40,7 +40,8 @@ int check(const CheckSettings& settings) {
     put("", text);
   }
   say(settings.folder + ": " + std::to_string(dataset.pairs.size()) + " pairs, " +
-      (findings.empty() ? "nothing wrong" : std::to_string(findings.size()) + " things wrong"));
+      (findings.empty() ? "nothing wrong"
+                        : std::to_string(findings.size()) + (findings.size() == 1 ? " thing wrong" : " things wrong")));
   return findings.empty() ? kOk : kBadInput;
 }
 

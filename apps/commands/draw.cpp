@@ -43,8 +43,25 @@ void check(const Settings& settings) {
   check_writable(settings.output);
 }
 
+/// Throws IoError where a match is not at the vertex that it names: the table is that of other meshes.
+void check_vertices(const CorrespondenceSet& matches, const PairScene& scene, const std::string& path) {
+  const auto check = [&](const Points& points, const Indices& keypoints, const Points& vertices, const char* side) {
+    for (std::size_t i = 0; i < keypoints.size(); ++i) {
+      const bool is_vertex = keypoints[i] >= 0 && keypoints[i] < vertices.rows();
+      const auto row = static_cast<Eigen::Index>(i);
+      if (!is_vertex || !((vertices.row(keypoints[i]) - points.row(row)).norm() <= 0.01 * matches.resolution))
+        throw IoError(path, "match " + std::to_string(i + 1),
+                      "is not at the vertex " + std::to_string(keypoints[i]) + " of the " + side +
+                          ", expected the two meshes that were matched");
+    }
+  };
+  check(matches.source_points, matches.source_keypoints, scene.source.mesh.vertices, "source");
+  check(matches.target_points, matches.target_keypoints, scene.target.mesh.vertices, "target");
+}
+
 Image draw_groups(PairScene& scene, const Settings& settings) {
   const CorrespondenceSet matches = read_matches(settings.matches);
+  check_vertices(matches, scene, settings.matches);
   scene.source_points = matches.source_points;
   scene.target_points = matches.target_points;
   if (scene.truth) scene.right = label_inliers(matches, *scene.truth, settings.threshold_pr);

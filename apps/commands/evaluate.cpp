@@ -57,7 +57,7 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
 }
 
 std::string times_text(const std::vector<TimeRow>& rows) {
-  TextTable table({"matches", "method", "runs", "median ms", "quartiles", ""});
+  TextTable table({"matches", "method", "runs", "median ms", "lower quartile", "upper quartile"});
   for (const TimeRow& row : rows)
     table.add({row.level, row.method, std::to_string(row.runs), fixed(row.median_ms, 4),
                fixed(row.lower_quartile_ms, 4), fixed(row.upper_quartile_ms, 4)});
@@ -79,6 +79,7 @@ int evaluate_time(const Settings& settings, const WorkList& list) {
     put("", Json{{"run", settings.study.run}, {"times", json}});
   else
     put("", times_text(rows));
+  say("the run is in " + settings.study.run);
   return kOk;
 }
 
@@ -94,8 +95,9 @@ int evaluate_pairs(const Settings& settings, const WorkList& list) {
     put("", Json{{"run", settings.study.run}, {"pairs", outcome.units}, {"failed", outcome.failed}});
   } else {
     put("", overview_text(outcome.summary));
-    say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed; the run is in " +
-        settings.study.run);
+    const std::string causes = outcome.failed > 0 ? " (records.csv says why)" : "";
+    say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed" + causes +
+        "; the run is in " + settings.study.run);
   }
   return outcome.failed > 0 ? kPartial : kOk;
 }

@@ -59,6 +59,7 @@ void add_match_options(CLI::App& command, MatchSettings& settings) {
   option("--sensor", settings.sensor, "Where the sensor stood, in mesh units")
       ->delimiter(',')
       ->expected(3)
+      ->default_str("0,0,0")
       ->type_name("X,Y,Z");
   option("--shot", settings.shot, "Shares between bins: additive, product, or pcl (additive with that library's slip)");
   option("--matcher", settings.matching.matcher,

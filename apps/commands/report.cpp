@@ -106,6 +106,7 @@ int report(const Settings& settings) {
     progress.begin(name);
     run_gnuplot(settings.output, name);
   }
+  say("the report is " + folder + "index.html");
   return is_whole ? kOk : kPartial;
 }
 

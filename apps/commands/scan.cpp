@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
+#include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/range_scan.h"
 #include "kernel/surface/resolution.h"
@@ -55,6 +56,8 @@ void check(const Settings& settings) {
 int scan(const Settings& settings) {
   check(settings);
   Mesh mesh = read_surface(settings.mesh);
+  if (mesh.triangles.rows() == 0)
+    throw IoError(settings.mesh, "", "has no faces, expected a surface (of one view, 'corral triangulate' makes them)");
   const RangeSensor sensor = sensor_of(settings, mesh);
   const ParallelFor parallel = workers(settings.threads);
   RangeScanOptions options = settings.options;

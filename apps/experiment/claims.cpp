@@ -55,7 +55,7 @@ std::vector<RowNumbers> keypoint_densities(const RunFolder& run, const Experimen
 
 void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, const ExperimentTable& table) {
   const std::string& name = table.info.name;
-  if (study.data.count(name)) throw InvalidInput("claims", "runs", name, "each experiment in one run only");
+  if (study.data.count(name)) throw IoError(run.folder, "", "the experiment " + name + " stands in another run too");
   study.figures[name] = table.info.figure;
   std::vector<RowNumbers> agreement(table.levels.size()), keypoints(table.levels.size());
   if (asks_for(book, name, Quantity::Agreement)) agreement = selection_agreement(run, table, book.methods);

@@ -11,6 +11,7 @@
 #include "apps/picture/pair_picture.h"
 #include "apps/report.h"
 #include "io/mesh_file.h"
+#include "io/toml_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 
@@ -104,6 +105,17 @@ class PoseGrid {
   std::map<Key, std::optional<double>> errors_;
 };
 
+std::string expected_pair(const std::string& name, const std::map<std::string, GalleryPair>& pairs) {
+  std::vector<std::string> names;
+  for (const auto& [full, pair] : pairs) {
+    names.push_back(pair.record->pair);
+    names.push_back(full);
+  }
+  const std::string nearest = nearest_name(name, names);
+  const std::string such_as = nearest.empty() && !names.empty() ? names.back() : nearest;
+  return "a pair of the runs with selections" + (such_as.empty() ? "" : ", such as " + such_as);
+}
+
 }  // namespace
 
 std::vector<GalleryPair> choose_gallery(const std::vector<RunFolder>& runs, const std::vector<std::string>& names) {
@@ -113,7 +125,7 @@ std::vector<GalleryPair> choose_gallery(const std::vector<RunFolder>& runs, cons
     const std::size_t before = chosen.size();
     for (const auto& [full, pair] : pairs)
       if (full == name || pair.record->pair == name) chosen.push_back(pair);
-    if (chosen.size() == before) throw InvalidInput("report", "pairs", name, "a pair of the runs, with selections");
+    if (chosen.size() == before) throw InvalidInput("report", "--pairs", name, expected_pair(name, pairs));
   }
   if (!names.empty()) return chosen;
   std::map<std::string, std::vector<GalleryPair>> by_dataset;

@@ -65,14 +65,22 @@ RunFolder read_run(const std::string& folder) {
   RunFolder run;
   run.folder = folder;
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
+  const std::string records = (std::filesystem::path(folder) / "records.csv").string();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw IoError(path, "", "does not exist, expected a folder that 'corral evaluate' made");
   try {
     const Json manifest = Json::parse(read_file(path));
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));
     for (const auto& [name, pair] : manifest.at("pairs").items()) run.pairs[name] = pair_of(pair);
-  } catch (const Json::exception& error) {
-    throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
+  } catch (const Json::parse_error& error) {
+    throw IoError(path, "byte " + std::to_string(error.byte), "no JSON, expected the manifest of a run");
+  } catch (const Json::exception&) {
+    throw IoError(path, "", "not the manifest of a run, or of one that another version of the program made");
   }
-  run.records = read_records((std::filesystem::path(folder) / "records.csv").string());
+  if (!std::filesystem::exists(records, ignored))
+    throw IoError(folder, "", "is half made: it has no records.csv, run the command that makes it again to go on");
+  run.records = read_records(records);
   return run;
 }
 

@@ -34,8 +34,10 @@ Dataset find_dataset(const std::string& data_folder, const std::string& name, co
     throw IoError(dataset.path("dataset.toml"), "name",
                   "is " + corral::quoted(dataset.name) + ", expected that of its folder");
   }
-  std::vector<std::string> present;
   std::error_code ignored;
+  if (!fs::is_directory(data_folder, ignored))
+    throw IoError(data_folder, "", "is no folder, expected a data set or a folder of such");
+  std::vector<std::string> present;
   for (const auto& entry : fs::directory_iterator(data_folder, ignored))
     if (is_dataset(entry.path())) present.push_back(entry.path().filename().string());
   std::sort(present.begin(), present.end());

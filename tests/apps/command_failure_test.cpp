@@ -40,7 +40,11 @@ void expect_bad_input(const Outcome& outcome, const std::string& says) {
 TEST(Usage, ACommandIsNeeded) {
   const Workplace place;
   expect_usage(place.corral(""), "subcommand is required");
-  expect_usage(place.corral("banana"), "unknown command 'banana'");
+  expect_usage(place.corral("banana"), "unknown command 'banana', expected one of those in corral --help");
+  expect_usage(place.corral("evalute"), "unknown command 'evalute', did you mean 'evaluate'?");
+  expect_usage(place.corral("dataset"), "subcommand is required");
+  expect_usage(place.corral("dataset chek data"), "unknown command 'chek', did you mean 'check'?");
+  expect_usage(place.corral("dataset make shelf"), "expected one of those in corral dataset make --help");
   expect_usage(place.corral("info"), "mesh");
   expect_usage(place.corral("info --banana a.ply"), "--banana");
   expect_usage(place.corral("match one.ply"), "target");
@@ -120,6 +124,34 @@ TEST(BadInput, EveryCommandNamesTheFileThatIsMissing) {
     SCOPED_TRACE(command);
     expect_bad_input(place.corral(command), "no.ply: does not exist");
   }
+}
+
+TEST(BadInput, AFolderThatIsNotWhatTheCommandReadsIsNamedWithWhatIs) {
+  const Workplace place;
+  for (const char* command : {"report folder -o out", "claims folder", "compare folder"}) {
+    SCOPED_TRACE(command);
+    expect_bad_input(place.corral(command), "expected a folder that 'corral evaluate' made");
+  }
+  for (const char* command : {"dataset check folder", "dataset measure folder"}) {
+    SCOPED_TRACE(command);
+    expect_bad_input(place.corral(command), "expected the folder of one data set");
+  }
+  expect_bad_input(place.corral("evaluate noise --data folder -o run"), "folder: is no folder");
+  place.put("points.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  expect_bad_input(place.corral("scan points.xyz -o view.ply"), "points.xyz: has no faces");
+  EXPECT_THAT(place.names(), ElementsAre("points.xyz"));
+}
+
+TEST(BadInput, MatchesAreDrawnOnTheMeshesThatWereMatched) {
+  const Workplace place;
+  place.put_pair();
+  ASSERT_EQ(place.corral("match model.ply copy.ply -o m.csv").status, 0);
+  EXPECT_EQ(place.corral("draw model.ply copy.ply --matches m.csv --width 200 -o right.png").status, 0);
+  expect_bad_input(place.corral("draw copy.ply copy.ply --matches m.csv -o wrong.png"), "of the source, expected");
+  expect_bad_input(place.corral("draw model.ply model.ply --matches m.csv -o wrong.png"), "of the target, expected");
+  write_mesh(place / "small.ply", testing::icosphere(0));
+  expect_bad_input(place.corral("draw small.ply copy.ply --matches m.csv -o wrong.png"), "of the source, expected");
+  EXPECT_FALSE(std::filesystem::exists(place / "wrong.png"));
 }
 
 TEST(BadInput, EveryCommandRefusesMalformedFiles) {

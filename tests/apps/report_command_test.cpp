@@ -147,6 +147,26 @@ TEST(StudyFigures, SayWhatIsWrong) {
   EXPECT_THROW(study_figures({run}), IoError);
 }
 
+TEST(Report, ARunThatIsHalfMadeOrTwiceTheSameIsNamed) {
+  const Workplace place;
+  put_run(place);
+  put_run(place, "again");
+  for (const char* command : {"report run again -o out", "claims run again"})
+    EXPECT_THAT(place.corral(command).err,
+                AllOf(StartsWith("corral: again: "), HasSubstr("stands in another run too")));
+  std::filesystem::remove(place / "run/records.csv");
+  for (const char* command : {"report run -o out", "claims run", "compare run"}) {
+    const Outcome outcome = place.corral(command);
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.err, StartsWith("corral: run: is half made"));
+  }
+  place.put("run/manifest.json", "{");
+  const Outcome outcome = place.corral("compare run");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("run/manifest.json, byte 2: no JSON"), Not(HasSubstr("exception"))));
+  EXPECT_FALSE(std::filesystem::exists(place / "out"));
+}
+
 TEST(Gallery, TakesThePairInTheMiddleOfEachDataSet) {
   RunFolder run;
   const auto add = [&](const std::string& dataset, const std::string& pair, int true_matches) {
@@ -192,7 +212,7 @@ TEST(Report, SameRunSameBytes) {
   for (const char* out : {"one", "two"}) {
     const Outcome outcome = place.corral("report run -o " + std::string(out));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.err, "the report is " + std::string(out) + "/index.html\n");
   }
   for (const std::string name :
        {"noise-b3r-precision", "noise-b3r-recall", "noise-b3r-success-curve", "noise-b3r-mean-error"})
@@ -224,7 +244,10 @@ TEST(Report, DrawsPairs) {
   const Workplace place;
   put_pair_run(place, "copy.ply");
   const EmptyPath path;  // the pictures need no gnuplot
-  EXPECT_EQ(place.corral("report run -o out --pairs nobody").status, 3);
+  const Outcome nobody = place.corral("report run -o out --pairs b3r/bal");
+  EXPECT_EQ(nobody.status, 3);
+  EXPECT_THAT(nobody.err,
+              HasSubstr("--pairs is b3r/bal, expected a pair of the runs with selections, such as b3r/ball"));
   EXPECT_EQ(place.corral("report run -o out").status, 1);
   for (const char* name : {"matches", "SS", "GC", "all_matches", "aligned"})
     EXPECT_THAT(place.text("out/pairs/b3r-ball-" + std::string(name) + ".png"), StartsWith("\x89PNG")) << name;

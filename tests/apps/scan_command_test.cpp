@@ -106,7 +106,7 @@ TEST(Scan, RefusesWhatMakesNoView) {
   expect(3, "ball.ply -o view.ply --from 0,0,0.1", "not in front of it");
   expect(3, "ball.ply -o view.ply --spacing-pr 1e-6", "2^26 rays");
   write_mesh(place / "cloud.ply", Mesh{testing::grid(4, 4).vertices, Triangles(0, 3)});
-  expect(3, "cloud.ply -o view.ply", "a point cloud has no surface");
+  expect(3, "cloud.ply -o view.ply", "cloud.ply: has no faces");
   EXPECT_THAT(place.names(), ElementsAre("ball.ply", "cloud.ply"));
 }
 
