@@ -40,6 +40,15 @@ StudyPair pair_of(const Json& json) {
   return pair;
 }
 
+/// A deeply nested value would be too much for the stack of whoever writes it out.
+Json parse_manifest(const std::string& path) {
+  constexpr int kDeepest = 100;
+  return Json::parse(read_file(path), [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw IoError(path, "", "not the manifest of a run: nested more than 100 deep");
+    return true;
+  });
+}
+
 double number_cell(const std::string& path, std::size_t row, const std::string& cell) {
   const std::optional<double> number = parse_double(cell);
   if (!number || !std::isfinite(*number))
@@ -66,7 +75,7 @@ RunFolder read_run(const std::string& folder) {
   run.folder = folder;
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
   try {
-    const Json manifest = Json::parse(read_file(path));
+    const Json manifest = parse_manifest(path);
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));
     for (const auto& [name, pair] : manifest.at("pairs").items()) run.pairs[name] = pair_of(pair);
   } catch (const Json::exception& error) {
