@@ -2,6 +2,7 @@
 #include "apps/experiment/claim_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -90,6 +91,29 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return pieces;
 }
 
+int whole_number(const TomlTable& table, const std::string& key, int otherwise, int least) {
+  const std::int64_t value = table.integer(key).value_or(otherwise);
+  if (value < least || value > 1'000'000)
+    table.fail(key, "out of range, expected " + std::to_string(least) + " .. 1000000");
+  return static_cast<int>(value);
+}
+
+/// One number for all methods together: of none of them can anything be said.
+bool has_one_number(const ClaimPart& part) {
+  return part.of >= Quantity::InlierRatio || part.take == Take::Correlation;
+}
+
+bool asks_for_methods(const ClaimPart& part) {
+  const auto is_of_methods = [](const Operand& operand) {
+    return operand.kind == Operand::Kind::Methods || operand.kind == Operand::Kind::Rank;
+  };
+  const auto compares_methods = [&](const Comparison& comparison) {
+    return is_of_methods(comparison.left) || is_of_methods(comparison.right);
+  };
+  return !part.largest.empty() || !part.smallest.empty() || part.take == Take::Wins || part.take == Take::MeanRank ||
+         std::any_of(part.is.begin(), part.is.end(), compares_methods);
+}
+
 /// Reads the parts of one claim.
 class PartReader {
  public:
@@ -110,7 +134,7 @@ class PartReader {
     part.from = table_.number("from").value_or(part.from);
     part.to = table_.number("to").value_or(part.to);
     if (const auto at = table_.number("at")) part.from = part.to = *at;
-    part.last_levels = static_cast<int>(table_.integer("last_levels").value_or(0));
+    part.last_levels = whole_number(table_, "last_levels", 0, 0);
     part.first = interval("first");
     part.last = interval("last");
     part.lead = table_.flag("lead").value_or(false);
@@ -120,7 +144,7 @@ class PartReader {
     for (const std::string& text : table_.texts("is")) part.is.push_back(comparison(text));
     part.largest = methods("largest", table_.texts("largest"));
     part.smallest = methods("smallest", table_.texts("smallest"));
-    part.after = static_cast<int>(table_.integer("after").value_or(0));
+    part.after = whole_number(table_, "after", 0, 0);
     part.ties = table_.flag("ties").value_or(false);
     part.is_note = table_.flag("note").value_or(false);
     check(part);
@@ -133,8 +157,9 @@ class PartReader {
       table_.fail("is", "missing: a rule needs is, largest or smallest");
     const bool needs_second = part.take == Take::Correlation || part.take == Take::Difference;
     if (needs_second != !part.with.empty()) table_.fail("with", "goes with correlation and difference, and only there");
-    if (part.last_levels < 0 || part.after < 0 || part.after > static_cast<int>(book_.methods.size()))
-      table_.fail(part.after != 0 ? "after" : "last_levels", "out of range");
+    if (has_one_number(part) && asks_for_methods(part))
+      table_.fail("is", "the rule has one number and none of each method, expected 'it' in its place");
+    if (part.after > static_cast<int>(book_.methods.size())) table_.fail("after", "there are fewer methods");
     if (!(part.percent >= 0 && part.percent <= 100)) table_.fail("percent", "expected 0 to 100");
   }
 
@@ -175,7 +200,8 @@ class PartReader {
   }
 
   std::optional<double> constant(const std::string& word) const {
-    return word == "tau" ? std::optional<double>(book_.tau) : parse_double(word);
+    const std::optional<double> number = word == "tau" ? std::optional<double>(book_.tau) : parse_double(word);
+    return number && std::isfinite(*number) ? number : std::nullopt;
   }
 
   /// LEFT (> | >= | < | <=) [FACTOR *] RIGHT [(+ | -) OFFSET]
@@ -205,6 +231,9 @@ class PartReader {
     else if (words.size() != 1)
       malformed();
     if (comparison.left.kind == Operand::Kind::Constant || comparison.right.kind == Operand::Kind::Rank) malformed();
+    if (comparison.left.kind == Operand::Kind::Rank &&
+        (comparison.right.kind != Operand::Kind::Constant || std::abs(comparison.offset) > 1000))
+      table_.fail("is", "in " + quoted(text) + ": expected a rank from 1 on its right side");
     return comparison;
   }
 
@@ -222,7 +251,7 @@ ClaimBook parse_claims(const std::string& path, const std::string& text) {
   if (book.methods.size() < 2) root.fail("methods", "expected two or more");
   book.tau = root.number("tau").value_or(book.tau);
   book.time_tau = root.number("time_tau").value_or(book.time_tau);
-  book.least_pairs = static_cast<int>(root.integer("least_pairs").value_or(book.least_pairs));
+  book.least_pairs = whole_number(root, "least_pairs", book.least_pairs, 1);
   book.slips = root.texts("slips");
   std::set<std::string> ids;
   for (const TomlTable& table : root.tables("claim")) {

@@ -40,6 +40,15 @@ StudyPair pair_of(const Json& json) {
   return pair;
 }
 
+/// A deeply nested value would be too much for the stack of whoever writes it out.
+Json parse_manifest(const std::string& path) {
+  constexpr int kDeepest = 100;
+  return Json::parse(read_file(path), [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw IoError(path, "", "not the manifest of a run: nested more than 100 deep");
+    return true;
+  });
+}
+
 double number_cell(const std::string& path, std::size_t row, const std::string& cell) {
   const std::optional<double> number = parse_double(cell);
   if (!number || !std::isfinite(*number))
@@ -70,7 +79,7 @@ RunFolder read_run(const std::string& folder) {
   if (!std::filesystem::exists(path, ignored))
     throw IoError(path, "", "does not exist, expected a folder that 'corral evaluate' made");
   try {
-    const Json manifest = Json::parse(read_file(path));
+    const Json manifest = parse_manifest(path);
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));
     for (const auto& [name, pair] : manifest.at("pairs").items()) run.pairs[name] = pair_of(pair);
   } catch (const Json::parse_error& error) {

@@ -146,6 +146,8 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
   for (const StudyLevel& level : info.levels) {
     if (is_value_sweep && level.low != level.high) table.fail("bins", info.attribute + " wants levels = [..]");
     if (is_positive_sweep && !(level.high > 0)) table.fail("levels", "expected numbers above zero");
+    if (experiment.sweep == Sweep::TableSize && !(level.low == std::floor(level.low) && level.low <= 1e9))
+      table.fail("levels", "found " + level.label + ", expected whole numbers of rows");
     for (const std::string& method : info.methods) try {
         find_grouper(method).configure(method_options(experiment, method, level));
       } catch (const InvalidInput& error) {

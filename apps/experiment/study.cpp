@@ -42,7 +42,12 @@ bool has_failed(const UnitResult& result) {
 bool fits(const UnitResult& result, const WorkUnit& unit) {
   if (!result.failure.empty()) return true;
   const std::size_t thresholds = result.has_truth ? unit.thresholds_pr.size() : 0;
-  const auto is_whole = [&](const TaskResult& task) { return task.correct.size() == (task.selected ? thresholds : 0); };
+  const auto is_whole = [&](const TaskResult& task) {
+    if (task.correct.size() != (task.selected ? thresholds : 0)) return false;
+    for (std::size_t i = 0; i < task.correct.size(); ++i)
+      if (task.correct[i] > std::min(*task.selected, result.true_matches[i])) return false;
+    return true;
+  };
   return result.tasks.size() == unit.tasks.size() && result.true_matches.size() == thresholds &&
          result.frame_share.size() == thresholds && result.oracles.size() == thresholds &&
          result.floor.has_value() == result.has_truth &&

@@ -2,6 +2,7 @@
 #include "apps/experiment/study_record.h"
 
 #include <cmath>
+#include <set>
 
 #include "io/csv_file.h"
 #include "io/line_reader.h"
@@ -77,6 +78,17 @@ bool parse_cell(const std::string& cell, std::optional<Value>& value) {
   return true;
 }
 
+/// Shares are from 0 to 1, and nothing else that is measured is below zero; the value is that of any attribute.
+template <class Value>
+bool is_in_range(const std::string&, const Value&) {
+  return true;
+}
+bool is_in_range(const std::string& name, const std::optional<double>& value) {
+  static const std::set<std::string> shares = {
+      "precision", "recall", "f1", "frame_share", "initial_add_share", "refined_add_share", "dense_add_share"};
+  return !value || name == "value" || (*value >= 0 && (shares.count(name) == 0 || *value <= 1));
+}
+
 }  // namespace
 
 const std::vector<std::string>& record_columns() {
@@ -104,7 +116,7 @@ std::vector<StudyRecord> read_records(const std::string& path) {
     StudyRecord& record = records.emplace_back();
     visit_columns(record, [&](const std::string& name, auto& field) {
       const std::string& cell = cells[static_cast<std::size_t>(table.column(name))];
-      if (!parse_cell(cell, field))
+      if (!parse_cell(cell, field) || !is_in_range(name, field))
         throw IoError(path, "row " + std::to_string(records.size()),
                       name + " is " + quoted(cell) + ", which is no value of that column");
     });

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/experiment/evaluate_unit.h"
+#include "kernel/error.h"
 
 namespace corral {
 namespace {
@@ -16,6 +17,19 @@ Json json_of(const std::optional<Value>& value) {
 
 std::optional<double> number_of(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional<double>(json.get<double>());
+}
+
+int count_of(const Json& json) {
+  constexpr std::int64_t kMost = 1'000'000'000;  // what records.csv takes
+  const std::int64_t count = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+  if (count < 0 || count > kMost) throw InvalidInput("unit_result", "count", json.dump(), "0 .. 1000000000");
+  return static_cast<int>(count);
+}
+
+std::vector<int> counts_of(const Json& json) {
+  std::vector<int> counts;
+  for (const Json& count : json) counts.push_back(count_of(count));
+  return counts;
 }
 
 Json to_json(const PoseScores& scores) {
@@ -41,8 +55,8 @@ Json to_json(const TaskResult& task) {
 TaskResult task_of(const Json& json) {
   TaskResult task;
   task.status = json.at("status");
-  if (!json.at("selected").is_null()) task.selected = json.at("selected").get<int>();
-  task.correct = json.at("correct").get<std::vector<int>>();
+  if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
+  task.correct = counts_of(json.at("correct"));
   task.initial = pose_scores_of(json.at("initial"));
   task.refined = pose_scores_of(json.at("refined"));
   task.dense = pose_scores_of(json.at("dense"));
@@ -54,11 +68,11 @@ UnitResult unit_of(const Json& json) {
   UnitResult result;
   result.failure = json.at("failure");
   result.resolution = json.at("resolution");
-  result.source_points = json.at("source_points");
-  result.source_keypoints = json.at("source_keypoints");
-  result.matches = json.at("matches");
+  result.source_points = count_of(json.at("source_points"));
+  result.source_keypoints = count_of(json.at("source_keypoints"));
+  result.matches = count_of(json.at("matches"));
   result.has_truth = json.at("has_truth");
-  result.true_matches = json.at("true_matches").get<std::vector<int>>();
+  result.true_matches = counts_of(json.at("true_matches"));
   for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
   for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
   for (const Json& oracle : json.at("oracles")) result.oracles.push_back(task_of(oracle));
@@ -92,6 +106,8 @@ std::optional<UnitResult> parse_unit_result(const std::string& text) {
   try {
     return unit_of(Json::parse(text));
   } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const InvalidInput&) {
     return std::nullopt;
   }
 }

@@ -156,6 +156,22 @@ TEST(ClaimFile, NamesWhatIsWrong) {
   EXPECT_THAT(complaint("take = \"difference\", is = [\"a > b\"]"), HasSubstr("with"));
   EXPECT_THAT(complaint("first = [2, 1], is = [\"a > b\"]"), HasSubstr("first"));
   EXPECT_THAT(complaint("is = [\"a > b\"], note = true"), HasSubstr("parts"));
+  EXPECT_THAT(complaint("is = [\"a > nan\"]"), HasSubstr("found 'nan'"));
+  EXPECT_THAT(complaint("is = [\"rank(a) > 1e30\"]"), HasSubstr("expected a rank"));
+  EXPECT_THAT(complaint("is = [\"rank(a) > b\"]"), HasSubstr("expected a rank"));
+  EXPECT_THAT(complaint("last_levels = 4294967297, is = [\"a > b\"]"), HasSubstr("last_levels: out of range"));
+  EXPECT_THAT(complaint("after = -1, is = [\"a > b\"]"), HasSubstr("after: out of range"));
+}
+
+TEST(ClaimFile, AskForNoMethodWhereThereIsOneNumber) {
+  for (const std::string kind : {"of = \"inlier ratio\"", "with = \"y\", take = \"correlation\""}) {
+    EXPECT_NO_THROW(rule(kind + ", is = [\"it > 0.5\"]"));
+    for (const std::string test : {"is = [\"b > 0.5\"]", "is = [\"it > mean(a,b)\"]", "is = [\"rank(a) <= 1\"]",
+                                   "largest = [\"b\"]", "smallest = [\"b\"]"})
+      EXPECT_THAT(testing::io_error_of([&] { rule(kind + ", " + test); }), HasSubstr("expected 'it'")) << kind << test;
+  }
+  EXPECT_THAT(testing::io_error_of([&] { rule("of = \"value\", take = \"wins\", is = [\"it > 0\"]"); }),
+              HasSubstr("expected 'it'"));
 }
 
 }  // namespace

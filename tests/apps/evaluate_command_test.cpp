@@ -143,13 +143,17 @@ TEST_F(Evaluate, WhatIsDoneStaysAndWhatIsDamagedIsDoneAgain) {
   put_text(units[2].string(), "{}");
   put_text(units[3].string(),
            std::regex_replace(text_of(units[3].string()), std::regex("\"correct\":\\[[0-9]+\\]"), "\"correct\":[]"));
+  put_text(units[4].string(), std::regex_replace(text_of(units[4].string()), std::regex("\"selected\":[0-9]+"),
+                                                 "\"selected\":2147483647"));
+  put_text(units[5].string(), std::regex_replace(text_of(units[5].string()), std::regex("\"correct\":\\[[0-9]+"),
+                                                 "\"correct\":[999999999"));
   put_text(place_ / "run/units/half.json.Ab12Cd", "{");
   put_text(place_ / "run/cache/0123.Ab12Cd", "half");
   const std::string times = place_.text("run/records.csv");
   ASSERT_EQ(evaluate("-o run").status, 0);
   EXPECT_EQ(content("run"), before);
   EXPECT_EQ(text_of(units[1].string()), other);
-  EXPECT_NE(place_.text("run/records.csv"), times);  // three units have new times
+  EXPECT_NE(place_.text("run/records.csv"), times);  // five units have new times
   EXPECT_FALSE(std::filesystem::exists(place_ / "run/units/half.json.Ab12Cd"));
   EXPECT_FALSE(std::filesystem::exists(place_ / "run/cache/0123.Ab12Cd"));
 }

@@ -61,6 +61,30 @@ TEST(StudyRecord, NamesWhatIsWrong) {
   }
 }
 
+TEST(StudyRecord, SharesAreUpToOneAndErrorsNotBelowZero) {
+  const ScratchFolder folder;
+  const auto complaint = [&](const StudyRecord& record) {
+    const std::string path = put_text(folder / "records.csv", csv_line(record_columns()) + record_line(record));
+    return testing::io_error_of([&] { read_records(path); });
+  };
+  StudyRecord record;
+  record.value = -1e308, record.f1 = 1, record.initial.mean_error_pr = 1e300;
+  EXPECT_EQ(complaint(record), "");
+  record.f1 = 1e308;
+  EXPECT_THAT(complaint(record), HasSubstr("f1 is '1e+308'"));
+  record.f1 = 0, record.dense.add_share = 1.5;
+  EXPECT_THAT(complaint(record), HasSubstr("dense_add_share"));
+  record.dense.add_share.reset(), record.time_ms = -1;
+  EXPECT_THAT(complaint(record), HasSubstr("time_ms"));
+}
+
+TEST(RunFolder, IsNotNestedWithoutEnd) {
+  const ScratchFolder folder;
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  put_text(folder / "manifest.json", "{\"x\": " + deep + "}");
+  EXPECT_THAT(testing::io_error_of([&] { read_run(folder / ""); }), HasSubstr("nested"));
+}
+
 TEST(Selections, ReadBackWhatWasWritten) {
   const PairSelections selections{{3, 1, 4}, {1, 5, 9}, {0.5, 1e9, 4}, {{"gc", {0, 2}}, {"ss", {}}}};
   const ScratchFolder folder;

@@ -75,6 +75,9 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
               HasSubstr("preset"));
   EXPECT_THAT(error_of(testing::replaced(testing::replaced(kGood, "noise_pr", "threshold_pr"), "0.05", "-1")),
               HasSubstr("above zero"));
+  for (const char* rows : {"0.5", "1e300"})
+    EXPECT_THAT(error_of(testing::replaced(testing::replaced(kGood, "noise_pr", "table_size"), "0.05", rows)),
+                HasSubstr("whole numbers of rows"));
   EXPECT_THAT(with("noise_pr", "si.similarity"), HasSubstr("not among the groupers"));
   EXPECT_THAT(with("noise_pr", "st.similarty"), HasSubstr("similarity"));
   EXPECT_THAT(with("repeats", "x") + with("levels = [0.05, 1]", "levels = [0.05, 1]\nrepeats = 0"),
