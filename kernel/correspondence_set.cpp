@@ -84,6 +84,28 @@ void check_rows(const CorrespondenceSet& matches, const Indices& rows, const std
       throw InvalidInput(who, "row", std::to_string(row), "one of " + std::to_string(matches.size()) + " rows from 0");
 }
 
+CorrespondenceSet select_rows(const CorrespondenceSet& matches, const Indices& rows) {
+  check_rows(matches, rows, "select_rows");
+  CorrespondenceSet chosen;
+  chosen.source_points = matches.source_points(rows, Eigen::all);
+  chosen.target_points = matches.target_points(rows, Eigen::all);
+  const auto pick = [&](const auto& from, auto& to) {
+    if (from.size() == 0) return;
+    to.resize(static_cast<decltype(to.size())>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      to[static_cast<decltype(to.size())>(i)] = from[static_cast<decltype(from.size())>(rows[i])];
+  };
+  pick(matches.source_frames, chosen.source_frames);
+  pick(matches.target_frames, chosen.target_frames);
+  pick(matches.source_keypoints, chosen.source_keypoints);
+  pick(matches.target_keypoints, chosen.target_keypoints);
+  pick(matches.feature_distance, chosen.feature_distance);
+  pick(matches.second_feature_distance, chosen.second_feature_distance);
+  chosen.resolution = matches.resolution;
+  chosen.source_centroid = matches.source_centroid;
+  return chosen;
+}
+
 void require_columns(const CorrespondenceSet& matches, const std::string& who, std::initializer_list<Column> columns) {
   matches.validate();
   if (matches.size() == 0) return;

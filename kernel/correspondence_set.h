@@ -37,6 +37,10 @@ struct CorrespondenceSet {
 /// Throws InvalidInput naming the first of some rows that the table does not have.
 void check_rows(const CorrespondenceSet& matches, const Indices& rows, const std::string& who);
 
+/// The table of these rows, in their order; a row may stand twice. Columns that are absent stay so. Throws InvalidInput for a
+/// row that the table does not have.
+CorrespondenceSet select_rows(const CorrespondenceSet& matches, const Indices& rows);
+
 /// Columns that not every table has.
 enum class Column { SourceFrames, TargetFrames, FeatureDistance, SecondFeatureDistance };
 

@@ -101,7 +101,7 @@ std::vector<DatasetPair> stored_pairs(const SetFolder& folder, const PublishedSc
          scene.model_file,
          file.string(),
          truth,
-         {pair_word(scene.model_file), scene.name, to_text(noise_deviation(clean, noisy) / resolution), "1", level}});
+         {file_word(scene.model_file), scene.name, to_text(noise_deviation(clean, noisy) / resolution), "1", level}});
   }
   return pairs;
 }
@@ -137,7 +137,7 @@ std::vector<std::string> import_b3r(const ImportB3rOptions& options, Progress& p
         options.stored
             ? stored_pairs(folder, scene, model, (fs::path(options.folder) / "scenes").string(), missing)
             : make_retrieval_pairs(folder,
-                                   {scene.name, pair_word(scene.model_file), scene.model_file, scene.scene_from_model},
+                                   {scene.name, file_word(scene.model_file), scene.model_file, scene.scene_from_model},
                                    model, options.seed, options.parallel);
     dataset.pairs.insert(dataset.pairs.end(), pairs.begin(), pairs.end());
   }

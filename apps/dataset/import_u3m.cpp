@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "apps/align/alignment_files.h"
+#include "apps/dataset/set_folder.h"
 #include "apps/read_surface.h"
 #include "apps/report.h"
 #include "io/dataset_file.h"
@@ -83,13 +83,6 @@ std::vector<Object> find_objects(const ImportU3mOptions& options) {
   std::vector<Object> list;
   for (auto& [name, object] : objects) list.push_back(std::move(object));
   return list;
-}
-
-/// A name that a pair of a data set may have.
-std::string pair_word(std::string name) {
-  for (char& letter : name)
-    if (!std::isalnum(static_cast<unsigned char>(letter)) && !std::strchr("._+-", letter)) letter = '-';
-  return name;
 }
 
 /// The transforms of a folder, by what stands before and after "-to-" in their names.

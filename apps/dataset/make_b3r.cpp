@@ -17,7 +17,7 @@ std::vector<std::string> model_names(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   std::set<std::string> seen;
   for (const std::string& file : files) {
-    names.push_back(pair_word(file));
+    names.push_back(file_word(file));
     if (!seen.insert(names.back()).second)
       throw IoError(file, "", "a second model of the name " + names.back() + ", expected each once");
   }

@@ -56,15 +56,16 @@ std::vector<std::string> mesh_files(const std::string& folder) {
 
 std::string checksum(const std::string& path) { return std::to_string(derive_seed(0, read_file(path))); }
 
-std::string pair_word(const std::string& file) {
-  std::string word = fs::path(file).stem().string();
+std::string file_word(const std::string& file) { return pair_word(fs::path(file).stem().string()); }
+
+std::string pair_word(std::string text) {
   const auto fits = [](unsigned char letter) {
     return letter < 128 && (std::isalnum(letter) || letter == '.' || letter == '_' || letter == '+' || letter == '-');
   };
   std::replace_if(
-      word.begin(), word.end(), [&](unsigned char letter) { return !fits(letter); }, '-');
-  if (!word.empty() && word[0] == '.') word[0] = '-';
-  return word;
+      text.begin(), text.end(), [&](unsigned char letter) { return !fits(letter); }, '-');
+  if (!text.empty() && text[0] == '.') text[0] = '-';
+  return text;
 }
 
 }  // namespace corral

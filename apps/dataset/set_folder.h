@@ -31,7 +31,9 @@ std::vector<std::string> mesh_files(const std::string& folder);
 /// A number that changes with the content of a file, for recipes.
 std::string checksum(const std::string& path);
 
-/// The name of a file without folders and ending, with - for each letter that no name of a pair may have.
-std::string pair_word(const std::string& file);
+/// A text with - for each letter that no name of a pair may have.
+std::string pair_word(std::string text);
+/// The same of the name of a file, without folders and ending.
+std::string file_word(const std::string& file);
 
 }  // namespace corral

@@ -60,7 +60,7 @@ void require_noise(const std::string& who, double noise_pr) {
 std::vector<NamedMesh> read_models(const std::vector<std::string>& files) {
   std::vector<NamedMesh> models;
   for (const std::string& file : files) {
-    NamedMesh model{pair_word(file), read_mesh(file)};
+    NamedMesh model{file_word(file), read_mesh(file)};
     const auto has_its_name = [&](const NamedMesh& other) { return other.name == model.name; };
     if (std::any_of(models.begin(), models.end(), has_its_name))
       throw IoError(file, "", "a second model of the name " + model.name + ", expected each once");

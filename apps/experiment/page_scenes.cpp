@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-#include "apps/experiment/page_tables.h"
+#include "apps/figure/method_style.h"
 #include "apps/progress.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
@@ -194,7 +194,7 @@ std::vector<SceneChoice> scenes_by_f1(const RunFolder& run, int number, const Ex
   for (const StudyRecord& record : run.records) {
     if (record.experiment != experiment.name || record.level != level || record.selection.empty()) continue;
     Tally& tally = tallies[{record.dataset, record.pair, record.selection}];
-    if (is_bound(record) || !record.f1) continue;
+    if (is_bound(record.method) || !record.f1) continue;
     tally.sum += *record.f1;
     ++tally.count;
   }

@@ -92,7 +92,7 @@ Json experiments_of(const RunFolder& run, int number) {
     Json levels = Json::array(), bounds = Json::array();
     for (const StudyLevel& level : experiment.levels) levels.push_back(level.label);
     for (const StudyRecord& record : run.records)
-      if (record.experiment == experiment.name && is_bound(record) &&
+      if (record.experiment == experiment.name && is_bound(record.method) &&
           std::find(bounds.begin(), bounds.end(), record.method) == bounds.end())
         bounds.push_back(record.method);
     experiments.push_back({{"run", number},
@@ -168,8 +168,6 @@ Json styles_of(const std::vector<RunFolder>& runs) {
 }
 
 }  // namespace
-
-bool is_bound(const StudyRecord& record) { return record.method == "oracle" || record.method == "floor"; }
 
 Json page_tables(const std::vector<RunFolder>& runs) {
   Json folders = Json::array(), experiments = Json::array(), columns = Json::object();

@@ -16,7 +16,4 @@ namespace corral {
 /// Throws IoError for a file that is missing or wrong.
 nlohmann::ordered_json page_tables(const std::vector<RunFolder>& runs);
 
-/// No grouper but a bound: the oracle or the floor.
-bool is_bound(const StudyRecord& record);
-
 }  // namespace corral

@@ -115,21 +115,7 @@ CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::ui
     std::swap(rows[i], rows[i + static_cast<std::size_t>(stream.below(rows.size() - i))]);
   rows.resize(static_cast<std::size_t>(count));
   std::sort(rows.begin(), rows.end());
-  CorrespondenceSet drawn;
-  drawn.source_points = matches.source_points(rows, Eigen::all);
-  drawn.target_points = matches.target_points(rows, Eigen::all);
-  drawn.feature_distance = matches.feature_distance(rows);
-  drawn.second_feature_distance = matches.second_feature_distance(rows);
-  for (const int row : rows) {
-    const auto at = static_cast<std::size_t>(row);
-    drawn.source_frames.push_back(matches.source_frames[at]);
-    drawn.target_frames.push_back(matches.target_frames[at]);
-    drawn.source_keypoints.push_back(matches.source_keypoints[at]);
-    drawn.target_keypoints.push_back(matches.target_keypoints[at]);
-  }
-  drawn.resolution = matches.resolution;
-  drawn.source_centroid = matches.source_centroid;
-  return drawn;
+  return select_rows(matches, rows);
 }
 
 std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,

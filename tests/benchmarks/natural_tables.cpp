@@ -48,21 +48,7 @@ CorrespondenceSet matches_of(const Mesh& source, const Mesh& target, const Detec
 CorrespondenceSet spread(const CorrespondenceSet& matches, int count) {
   Indices rows;
   for (int i = 0; i < count; ++i) rows.push_back(static_cast<int>(std::int64_t{i} * matches.size() / count));
-  CorrespondenceSet chosen;
-  chosen.source_points = matches.source_points(rows, Eigen::all);
-  chosen.target_points = matches.target_points(rows, Eigen::all);
-  chosen.feature_distance = matches.feature_distance(rows);
-  chosen.second_feature_distance = matches.second_feature_distance(rows);
-  for (const int row : rows) {
-    const auto i = static_cast<std::size_t>(row);
-    chosen.source_frames.push_back(matches.source_frames[i]);
-    chosen.target_frames.push_back(matches.target_frames[i]);
-    chosen.source_keypoints.push_back(matches.source_keypoints[i]);
-    chosen.target_keypoints.push_back(matches.target_keypoints[i]);
-  }
-  chosen.resolution = matches.resolution;
-  chosen.source_centroid = matches.source_centroid;
-  return chosen;
+  return select_rows(matches, rows);
 }
 
 double inlier_ratio(const CorrespondenceSet& matches, const RigidTransform& truth) {

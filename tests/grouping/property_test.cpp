@@ -27,7 +27,6 @@ using testing::Turns;
 using testing::variants_where;
 using testing::with_moved_source;
 using testing::with_moved_target;
-using testing::with_rows;
 
 constexpr int kCases = 1000;
 
@@ -160,7 +159,7 @@ TEST_P(GrouperWithoutRowNumbers, OrderOfTheRowsDoesNotMatter) {
   const auto tie = [&](const CorrespondenceSet& matches) { return reference(matches).tied; };
   for_each_case_but(tie, [&](const CorrespondenceSet& matches, RandomStream& random) {
     const Indices old_row = testing::shuffled_rows(matches.size(), random.below(1u << 31));
-    EXPECT_EQ(by_old_name(group(with_rows(matches, old_row)).selected, old_row), group(matches).selected);
+    EXPECT_EQ(by_old_name(group(select_rows(matches, old_row)).selected, old_row), group(matches).selected);
   });
 }
 
@@ -178,7 +177,7 @@ TEST_P(GrouperOfCopies, EveryRowTwiceSelectsTheSame) {
     Indices expected = group(matches).selected;
     if (GetParam().promises.copies == Copies::Both)
       for (const int row : Indices(expected)) expected.push_back(row + matches.size());
-    EXPECT_EQ(group(with_rows(matches, twice)).selected, expected);
+    EXPECT_EQ(group(select_rows(matches, twice)).selected, expected);
   });
 }
 

@@ -31,6 +31,38 @@ void expect_blames(const std::string& column, Change&& change) {
   EXPECT_THAT(verdict(change), HasSubstr(column));
 }
 
+TEST(CorrespondenceSet, SelectedRowsKeepAllTheirColumns) {
+  const CorrespondenceSet matches = full_table(5);
+  const Indices rows = {4, 0, 4};
+  const CorrespondenceSet chosen = select_rows(matches, rows);
+  ASSERT_EQ(chosen.size(), 3);
+  EXPECT_EQ(refusal_of([&] { chosen.validate(); }), "");
+  for (int i = 0; i < 3; ++i) {
+    const auto to = static_cast<std::size_t>(i), from = static_cast<std::size_t>(rows[to]);
+    EXPECT_EQ(chosen.source_points.row(i), matches.source_points.row(rows[to]));
+    EXPECT_EQ(chosen.target_points.row(i), matches.target_points.row(rows[to]));
+    EXPECT_EQ(chosen.source_frames[to], matches.source_frames[from]);
+    EXPECT_EQ(chosen.target_frames[to], matches.target_frames[from]);
+    EXPECT_EQ(chosen.source_keypoints[to], matches.source_keypoints[from]);
+    EXPECT_EQ(chosen.target_keypoints[to], matches.target_keypoints[from]);
+    EXPECT_EQ(chosen.feature_distance(i), matches.feature_distance(rows[to]));
+    EXPECT_EQ(chosen.second_feature_distance(i), matches.second_feature_distance(rows[to]));
+  }
+  EXPECT_EQ(chosen.resolution, matches.resolution);
+  EXPECT_EQ(chosen.source_centroid, matches.source_centroid);
+}
+
+TEST(CorrespondenceSet, SelectedRowsLackWhatTheTableLacks) {
+  CorrespondenceSet matches;
+  matches.source_points = matches.target_points = Points::Zero(2, 3);
+  const CorrespondenceSet chosen = select_rows(matches, {1});
+  EXPECT_EQ(chosen.size(), 1);
+  EXPECT_TRUE(chosen.source_frames.empty() && chosen.target_keypoints.empty() && chosen.feature_distance.size() == 0);
+  EXPECT_EQ(select_rows(matches, {}).size(), 0);
+  EXPECT_THROW(select_rows(matches, {2}), InvalidInput);
+  EXPECT_THROW(select_rows(matches, {-1}), InvalidInput);
+}
+
 TEST(CorrespondenceSet, GoodTablesPass) {
   EXPECT_EQ(verdict([](auto&) {}), "");
   EXPECT_EQ(refusal_of([] { CorrespondenceSet{Points(0, 3), Points(0, 3), {}, {}, {}, {}, {}, {}, 1, {}}.validate(); }),

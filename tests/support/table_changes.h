@@ -46,26 +46,6 @@ inline CorrespondenceSet with_sides_swapped(CorrespondenceSet table) {
   return table;
 }
 
-template <class Value>
-std::vector<Value> chosen(const std::vector<Value>& values, const Indices& rows) {
-  std::vector<Value> of_rows;
-  for (const int row : rows) of_rows.push_back(values[static_cast<std::size_t>(row)]);
-  return of_rows;
-}
-
-/// Row i of the answer is row rows[i] of a table with all columns.
-inline CorrespondenceSet with_rows(CorrespondenceSet table, const Indices& rows) {
-  table.source_points = table.source_points(rows, Eigen::all).eval();
-  table.target_points = table.target_points(rows, Eigen::all).eval();
-  table.source_frames = chosen(table.source_frames, rows);
-  table.target_frames = chosen(table.target_frames, rows);
-  table.source_keypoints = chosen(table.source_keypoints, rows);
-  table.target_keypoints = chosen(table.target_keypoints, rows);
-  table.feature_distance = table.feature_distance(rows).eval();
-  table.second_feature_distance = table.second_feature_distance(rows).eval();
-  return table;
-}
-
 /// Whole multiples of 2^-20, so that sums with other such numbers are exact.
 inline CorrespondenceSet on_a_grid(CorrespondenceSet table) {
   const auto round = [](const auto& lengths) { return ((lengths * 0x1p20).array().round().matrix() * 0x1p-20).eval(); };
