@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dense_refinement.h"
 
+#include <utility>
+
 #include "kernel/surface/normals.h"
 
 namespace corral {
 
-DenseRefinement::DenseRefinement(const Mesh& source, const Mesh& target, double resolution)
+DenseRefinement::DenseRefinement(const Mesh& source, const Mesh& target, double resolution, ParallelFor parallel)
     : source_(source),
       target_(target),
       resolution_(resolution),
-      normals_(estimate_normals(target)),
-      tree_(target.vertices),
-      tracker_(tree_) {}
+      parallel_(std::move(parallel)),
+      normals_(estimate_normals(target, {}, parallel_)),
+      tree_(target.vertices, parallel_),
+      tracker_(tree_, parallel_) {}
 
 void DenseRefinement::refine(std::vector<MethodRecord>& records, const std::optional<PairTruth>& truth) {
   const SurfacePair surfaces{
-      source_.vertices, target_.vertices, normals_, resolution_,
-      [this](const Points& queries, double limit) -> const Indices& { return tracker_.nearest(queries, limit); }};
+      source_.vertices,
+      target_.vertices,
+      normals_,
+      resolution_,
+      [this](const Points& queries, double limit) -> const PointPairs& { return tracker_.pair(queries, limit); },
+      parallel_};
   for (MethodRecord& record : records) {
     if (!record.pose.target_from_source) continue;
     record.dense = refine_surface(surfaces, *record.pose.target_from_source);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/evaluate_pair.h"
+#include "kernel/parallel.h"
 #include "kernel/surface/mesh.h"
 #include "kernel/surface/nearest_points.h"
 
@@ -14,7 +15,7 @@ namespace corral {
 class DenseRefinement {
  public:
   /// `resolution`: mesh units per pr.
-  DenseRefinement(const Mesh& source, const Mesh& target, double resolution);
+  DenseRefinement(const Mesh& source, const Mesh& target, double resolution, ParallelFor parallel = one_by_one);
 
   /// Fills `dense` of every record that has a pose, and with a truth its errors.
   void refine(std::vector<MethodRecord>& records, const std::optional<PairTruth>& truth);
@@ -22,6 +23,7 @@ class DenseRefinement {
  private:
   const Mesh &source_, &target_;
   double resolution_;
+  ParallelFor parallel_;
   Points normals_;
   PointTree tree_;
   NearestTracker tracker_;

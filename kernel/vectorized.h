@@ -123,6 +123,17 @@ struct Register {
     else
       return value[0] + value[1];
   }
+  /// The larger ones of lane i and lane i + half the count.
+  CORRAL_INLINE auto largest() const {
+    if constexpr (kCount == 8)
+      return larger(Register<Double4, Integers4>{__builtin_shufflevector(value, value, 0, 1, 2, 3)},
+                    Register<Double4, Integers4>{__builtin_shufflevector(value, value, 4, 5, 6, 7)});
+    else if constexpr (kCount == 4)
+      return larger(Register<Double2, Integers2>{__builtin_shufflevector(value, value, 0, 1)},
+                    Register<Double2, Integers2>{__builtin_shufflevector(value, value, 2, 3)});
+    else
+      return value[0] < value[1] ? value[1] : value[0];
+  }
 };
 
 template <class Half>
@@ -167,6 +178,7 @@ struct Pair {
   friend CORRAL_INLINE Pair square_root(Pair a) { return {square_root(a.low), square_root(a.high)}; }
   friend CORRAL_INLINE Pair magnitude(Pair a) { return {magnitude(a.low), magnitude(a.high)}; }
   CORRAL_INLINE Half folded() const { return low + high; }
+  CORRAL_INLINE Half largest() const { return larger(low, high); }
 };
 
 using Lanes8 = Register<Double8, Integers8>;
@@ -180,6 +192,12 @@ using Floats4x4 = Pair<Pair<Register<Float4, Integers4>>>;
 template <class Lanes>
 CORRAL_INLINE double sum(Lanes values) {
   return values.folded().folded().folded();
+}
+
+/// The largest lane; none may be NaN.
+template <class Lanes>
+CORRAL_INLINE double largest(Lanes values) {
+  return values.largest().largest().largest();
 }
 
 /// The smallest lane; none may be NaN.

@@ -7,35 +7,47 @@
 #include <limits>
 
 #include "kernel/error.h"
+#include "kernel/spatial_order.h"
+#include "kernel/vectorized.h"
 #include "refine/gram_fit.h"
 
 namespace corral {
 namespace {
 
-constexpr int kFewestPairs = 6;  // as many as a pose has parts
-constexpr int kMostInVain = 3;   // rounds of a level without a new lowest cost: pairs that change to and fro
-constexpr int kBlock = 128;      // pairs whose columns are multiplied together
+constexpr int kFewestPairs = 6;       // as many as a pose has parts
+constexpr std::size_t kShare = 4096;  // pairs that one thread sums at a time
+constexpr int kMostInVain = 3;        // rounds of a level without a new lowest cost: pairs that change to and fro
+
+/// Eight pairs, or fewer: the moved points m in pr about a centre, d = m - q in pr, the normals n, and 1; all are zero where
+/// there is no pair.
+template <class Lanes>
+struct PairLanes {
+  Lanes m[3], d[3], n[3], one;
+};
 
 /// The columns whose products make up the sums: of a plane pair the 13 of its residual, of a point pair those that its three
-/// residuals share. m is the moved point, d = m - q, all in pr about a centre.
+/// residuals share.
 struct PlaneColumns {
   static constexpr int kWidth = 13;
-  template <class Row>
-  static void set(Row row, const Eigen::Vector3d& m, const Eigen::Vector3d& d, const Eigen::Vector3d& n) {
-    for (int axis = 0; axis < 3; ++axis) row.template segment<3>(3 * axis) = m(axis) * n.transpose();
-    row.template segment<3>(9) = n.transpose();
-    row(12) = n.dot(d);
+  static constexpr bool kWithNormals = true;
+  template <class Lanes>
+  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int j = 0; j < 3; ++j) columns[3 * axis + j] = pair.m[axis] * pair.n[j];
+    for (int j = 0; j < 3; ++j) columns[9 + j] = pair.n[j];
+    columns[12] = pair.n[0] * pair.d[0] + pair.n[1] * pair.d[1] + pair.n[2] * pair.d[2];
   }
   static Gram gram(const Eigen::Matrix<double, kWidth, kWidth>& sums) { return sums; }
 };
 
 struct PointColumns {
   static constexpr int kWidth = 7;
-  template <class Row>
-  static void set(Row row, const Eigen::Vector3d& m, const Eigen::Vector3d& d, const Eigen::Vector3d&) {
-    row.template head<3>() = m.transpose();
-    row(3) = 1;
-    row.template tail<3>() = d.transpose();
+  static constexpr bool kWithNormals = false;
+  template <class Lanes>
+  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
+    for (int axis = 0; axis < 3; ++axis) columns[axis] = pair.m[axis];
+    columns[3] = pair.one;
+    for (int axis = 0; axis < 3; ++axis) columns[4 + axis] = pair.d[axis];
   }
   static Gram gram(const Eigen::Matrix<double, kWidth, kWidth>& sums) {
     Gram gram = Gram::Zero();  // r_axis = sum_j (R - I)(axis, j) m_j + t_axis + d_axis
@@ -47,6 +59,20 @@ struct PointColumns {
       gram(12, 12) += sums(4 + axis, 4 + axis);
     }
     return gram;
+  }
+};
+
+/// The columns of the point-to-plane equations: arm x normal, normal. The arm stands in the place of m.
+struct EquationColumns {
+  static constexpr int kWidth = 6;
+  static constexpr bool kWithNormals = true;
+  template <class Lanes>
+  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+      columns[axis] = pair.m[next] * pair.n[last] - pair.m[last] * pair.n[next];
+      columns[3 + axis] = pair.n[axis];
+    }
   }
 };
 
@@ -66,7 +92,13 @@ struct Pairing {
 class SurfaceRefiner {
  public:
   SurfaceRefiner(const SurfacePair& surfaces, const SurfaceOptions& options)
-      : surfaces_(surfaces), options_(options), unit_(surfaces.resolution) {}
+      : surfaces_(surfaces),
+        options_(options),
+        unit_(surfaces.resolution),
+        source_(surfaces.source(spatial_order(surfaces.source, surfaces.parallel), Eigen::all)) {
+    for (Eigen::Index row = 0; row < surfaces.target_normals.rows(); ++row)
+      has_normal_.push_back(surfaces.target_normals.row(row).squaredNorm() > 0);
+  }
 
   RefinedSurface run(const RigidTransform& start) {
     pose_ = start;
@@ -94,13 +126,13 @@ class SurfaceRefiner {
     return pairing.pairs >= kFewestPairs && pairing.overlap() >= options_.least_overlap;
   }
 
-  /// Every so manieth source point.
+  /// Every so manieth source point in spatial order.
   void take(int step) {
-    const Eigen::Index count = (surfaces_.source.rows() + step - 1) / step;
-    taken_ = surfaces_.source(Eigen::seqN(0, count, step), Eigen::all);
+    const Eigen::Index count = (source_.rows() + step - 1) / step;
+    taken_ = source_(Eigen::seqN(0, count, step), Eigen::all);
     if (count == 0) return;
-    const Eigen::RowVector3d mean = taken_.colwise().mean();
-    size_pr_ = std::sqrt((taken_.rowwise() - mean).rowwise().squaredNorm().mean()) / unit_;
+    taken_mean_ = taken_.colwise().mean().transpose();
+    size_pr_ = std::sqrt((taken_.rowwise() - taken_mean_.transpose()).rowwise().squaredNorm().mean()) / unit_;
   }
 
   Pairing pair(double limit_pr) {
@@ -110,34 +142,68 @@ class SurfaceRefiner {
 
   template <class Columns>
   Pairing pair_by(double limit_pr) {
-    constexpr int kWidth = Columns::kWidth;
-    moved_ = pose_.apply(taken_);
-    const Indices& nearest = surfaces_.nearest(moved_, limit_pr * unit_);
-    centre_ = moved_.rows() > 0 ? Eigen::Vector3d(moved_.colwise().mean().transpose()) : Eigen::Vector3d::Zero();
-    Eigen::Matrix<double, kWidth, kWidth> sums = Eigen::Matrix<double, kWidth, kWidth>::Zero();
-    Eigen::Matrix<double, kBlock, kWidth, Eigen::RowMajor> block;
-    int filled = 0;
-    const auto add_block = [&] {
-      sums.noalias() += block.topRows(filled).transpose() * block.topRows(filled);
-      filled = 0;
-    };
-    partners_.clear();
+    pairs_ = &surfaces_.pair(pose_.apply(taken_), limit_pr * unit_);
+    centre_ = pose_.rotation * taken_mean_ + pose_.translation;
     Pairing pairing;
-    pairing.points = moved_.rows();
-    for (Eigen::Index i = 0; i < moved_.rows(); ++i) {
-      const int row = nearest[static_cast<std::size_t>(i)];
-      if (row < 0) continue;
-      const Eigen::Vector3d n = surfaces_.target_normals.row(row).transpose();
-      if (!(n.squaredNorm() > 0)) continue;
-      const Eigen::Vector3d m = moved_.row(i).transpose();
-      Columns::set(block.row(filled++), (m - centre_) / unit_, (m - surfaces_.target.row(row).transpose()) / unit_, n);
-      ++pairing.pairs;
-      partners_.push_back(row);
-      if (filled == kBlock) add_block();
+    pairing.points = taken_.rows();
+    is_pair_.resize(pairs_->target_rows.size());
+    for (std::size_t place = 0; place < is_pair_.size(); ++place) {
+      const int row = pairs_->target_rows[place];
+      is_pair_[place] = row >= 0 && has_normal_[static_cast<std::size_t>(row)];
+      pairing.pairs += is_pair_[place] != 0;
     }
-    add_block();
-    pairing.gram = Columns::gram(sums);
+    pairing.gram = Columns::gram(sum_of_products<Columns>(pairs_->source, centre_, 1 / unit_));
     return pairing;
+  }
+
+  /// sum f f^T over the pairs, f their columns; m are some places about a centre, all is scaled.
+  template <class Columns>
+  auto sum_of_products(const AlignedColumn (&places)[3], const Eigen::Vector3d& centre, double scale) const {
+    constexpr int kWidth = Columns::kWidth;
+    using Sums = Eigen::Matrix<double, kWidth, kWidth>;
+    std::vector<Sums> parts((is_pair_.size() + kShare - 1) / kShare);
+    surfaces_.parallel(static_cast<int>(parts.size()), [&](int part) {
+      const std::size_t begin = static_cast<std::size_t>(part) * kShare,
+                        end = std::min(begin + kShare, is_pair_.size());
+      vectorized([&](auto kind) {
+        using Lanes = typename decltype(kind)::Lanes;
+        Lanes sums[kWidth][kWidth];
+        for (auto& row : sums) std::fill_n(row, kWidth, Lanes::fill(0));
+        for (std::size_t first = begin; first < end; first += kLanes) {
+          Lanes columns[kWidth];
+          Columns::set(eight_pairs<Lanes, Columns::kWithNormals>(first, places, centre, scale), columns);
+          for (int i = 0; i < kWidth; ++i)
+            for (int j = 0; j <= i; ++j) sums[i][j] = sums[i][j] + columns[i] * columns[j];
+        }
+        for (int i = 0; i < kWidth; ++i)
+          for (int j = 0; j <= i; ++j)
+            parts[static_cast<std::size_t>(part)](i, j) = parts[static_cast<std::size_t>(part)](j, i) = sum(sums[i][j]);
+      });
+    });
+    Sums result = Sums::Zero();
+    for (const Sums& part : parts) result += part;
+    return result;
+  }
+
+  template <class Lanes, bool kWithNormals>
+  CORRAL_INLINE PairLanes<Lanes> eight_pairs(std::size_t first, const AlignedColumn (&places)[3],
+                                             const Eigen::Vector3d& centre, double scale) const {
+    PairLanes<Lanes> pairs;
+    const Lanes zero = Lanes::fill(0);
+    pairs.one = Lanes::load(&is_pair_[first]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Lanes m = Lanes::load(&places[axis][first]) - Lanes::fill(centre(axis)),
+                  d = Lanes::load(&pairs_->source[axis][first]) - Lanes::load(&pairs_->target[axis][first]);
+      pairs.m[axis] = select(zero < pairs.one, m * Lanes::fill(scale), zero);
+      pairs.d[axis] = select(zero < pairs.one, d * Lanes::fill(scale), zero);
+    }
+    if (!kWithNormals) return pairs;
+    double normals[3][kLanes] = {};
+    for (std::size_t i = 0; i < kLanes; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        if (is_pair_[first + i] != 0) normals[axis][i] = surfaces_.target_normals(pairs_->target_rows[first + i], axis);
+    for (int axis = 0; axis < 3; ++axis) pairs.n[axis] = Lanes::load(normals[axis]);
+    return pairs;
   }
 
   Pairing pair_all(double limit_pr) {
@@ -149,28 +215,26 @@ class SurfaceRefiner {
   Pairing finish(double limit_pr) {
     const Pairing after = pair_all(limit_pr);
     result_.after = {after.overlap(), after.rms_pr()};
-    result_.condition = condition();
+    result_.condition = condition(after.pairs);
     return after;
   }
 
   /// Of the point-to-plane equations of the last pairs, taken at their target points.
-  double condition() const {
+  double condition(Eigen::Index count) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const auto count = static_cast<Eigen::Index>(partners_.size());
     if (count < kFewestPairs) return kInfinity;
-    Points arms(count, 3);
-    for (Eigen::Index i = 0; i < count; ++i) arms.row(i) = surfaces_.target.row(partners_[static_cast<std::size_t>(i)]);
-    arms.rowwise() -= arms.colwise().mean().eval();
-    const double size = std::sqrt(arms.rowwise().squaredNorm().mean());
-    if (!(size > 0)) return kInfinity;
-    Eigen::Matrix<double, 6, 6> equations = Eigen::Matrix<double, 6, 6>::Zero();
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Vector3d n = surfaces_.target_normals.row(partners_[static_cast<std::size_t>(i)]).transpose();
-      const Eigen::Vector3d arm = arms.row(i).transpose() / size;
-      Eigen::Matrix<double, 6, 1> a;
-      a << arm.cross(n), n;
-      equations.noalias() += a * a.transpose();
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    double squares = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const AlignedColumn& places = pairs_->target[axis];
+      for (std::size_t i = 0; i < is_pair_.size(); ++i)
+        if (is_pair_[i] != 0) mean(axis) += places[i] / static_cast<double>(count);
+      for (std::size_t i = 0; i < is_pair_.size(); ++i)
+        if (is_pair_[i] != 0) squares += (places[i] - mean(axis)) * (places[i] - mean(axis));
     }
+    const double size = std::sqrt(squares / static_cast<double>(count));
+    if (!(size > 0)) return kInfinity;
+    const auto equations = sum_of_products<EquationColumns>(pairs_->target, mean, 1 / size);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(equations, Eigen::EigenvaluesOnly);
     const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(5);
     return least > 0 ? most / least : kInfinity;
@@ -213,11 +277,15 @@ class SurfaceRefiner {
 
   const SurfacePair& surfaces_;
   const SurfaceOptions& options_;
-  double unit_;  // mesh units per pr
+  double unit_;                   // mesh units per pr
+  Points source_;                 // in spatial order
+  std::vector<char> has_normal_;  // by target point
   RigidTransform pose_;
-  Points taken_, moved_;
+  const PointPairs* pairs_ = nullptr;  // of the last pose
+  AlignedColumn is_pair_;              // 1 or 0 for each of them
+  Points taken_;
+  Eigen::Vector3d taken_mean_ = Eigen::Vector3d::Zero();
   double size_pr_ = 0;                                // root mean square distance of the taken points from their mean
-  Indices partners_;                                  // target points of the last pairs
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // of the moved points, mesh units
   RefinedSurface result_;
 };

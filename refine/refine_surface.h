@@ -5,14 +5,16 @@
 #include <optional>
 #include <vector>
 
+#include "kernel/parallel.h"
+#include "kernel/point_pairs.h"
 #include "kernel/rigid_transform.h"
 #include "kernel/types.h"
 
 namespace corral {
 
-/// For each query (N x 3, in the target) the row of the nearest target point, -1 if none lies within the limit (mesh
-/// units). NearestTracker::nearest is one.
-using NearestRows = std::function<const Indices&(const Points& queries, double limit)>;
+/// Pairs each query (N x 3, in the target, neighbours next to each other) with the nearest target point, if one lies within
+/// the limit (mesh units). NearestTracker::pair is one.
+using NearestPairs = std::function<const PointPairs&(const Points& queries, double limit)>;
 
 /// Two surfaces as points. What is referred to must outlive the call.
 struct SurfacePair {
@@ -20,7 +22,8 @@ struct SurfacePair {
   const Points& target;          ///< V x 3
   const Points& target_normals;  ///< V x 3, unit length; zero or NaN: none, and nothing is paired with that point
   double resolution;             ///< mesh units per pr
-  NearestRows nearest;           ///< among the target points
+  NearestPairs pair;             ///< with the target points
+  ParallelFor parallel = one_by_one;
 };
 
 enum class SurfaceResidual {

@@ -75,7 +75,7 @@ std::optional<RigidTransform> ViewSet::lay(int a, int b, const RigidTransform& s
   NearestTracker tracker(at(b).tree);
   const SurfacePair surfaces{
       mesh(a).vertices, mesh(b).vertices, at(b).normals, resolution_,
-      [&](const Points& queries, double limit) -> const Indices& { return tracker.nearest(queries, limit); }};
+      [&](const Points& queries, double limit) -> const PointPairs& { return tracker.pair(queries, limit); }};
   SurfaceOptions coarse, fine;
   fine.levels = {coarse.levels.back()};
   coarse.levels.pop_back();

@@ -8,6 +8,7 @@
 #include "apps/explain.h"
 #include "apps/progress.h"
 #include "apps/report_pair.h"
+#include "apps/workers.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -160,7 +161,7 @@ PairRun evaluate(const Settings& settings) {
   if (run.truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
   if (settings.dense) {
     progress.begin("dense refinement");
-    DenseRefinement dense(source, target, run.pair.report.resolution);
+    DenseRefinement dense(source, target, run.pair.report.resolution, workers(settings.match.threads));
     dense.refine(run.records, run.truth);
     dense.refine(run.bounds, run.truth);
   }

@@ -3,132 +3,150 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
-#include <numeric>
-#include <utility>
+
+#include "kernel/spatial_order.h"
 
 namespace corral {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-11;  // of a few sums and roots, generously
-constexpr double kSlack = 1.25;      // of the limit, so that queries just beyond it can move without a search
-constexpr int kDeepest = 12;         // levels of eight entries: more than there are row numbers
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kRounding = 1e-11;   // of a few sums and roots, generously
+constexpr double kSlack = 1.25;       // of the limit, so that queries just beyond it can move without a search
+constexpr std::size_t kShare = 4096;  // places that one thread takes at a time
+constexpr int kDeepest = 12;          // levels of eight entries: more than there are row numbers
+
+/// Calls visit(lane) for the lanes on which a comparison holds.
+template <class Lanes, class Comparison, class Visit>
+CORRAL_INLINE void visit_lanes(Comparison holds, const Visit& visit) {
+  std::uint8_t flags[kLanes];
+  select(holds, Lanes::fill(1), Lanes::fill(0)).store(flags);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, flags, sizeof bits);
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctzll(bits)) / 8);
+}
 
 }  // namespace
 
-struct PointTree::Item {
-  double place[3];
-  int row;
+struct PointTree::Box {
+  double low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
+  int number = kNothing;  // of what it holds
+
+  void add(int axis, double from, double to) {
+    low[axis] = std::min(low[axis], from);
+    high[axis] = std::max(high[axis], to);
+  }
 };
 
-PointTree::PointTree(const Points& points) {
-  std::vector<Item> items;
-  items.reserve(static_cast<std::size_t>(points.rows()));
-  for (Eigen::Index row = 0; row < points.rows(); ++row)
-    if (points.row(row).allFinite())
-      items.push_back({{points(row, 0), points(row, 1), points(row, 2)}, static_cast<int>(row)});
-  if (items.empty()) return;
-  Node whole;
-  root_ = add(items.data(), items.data() + items.size(), whole, 0);
-}
-
-/// A leaf or a node of some points; their box becomes an entry of another node.
-int PointTree::add(Item* first, Item* last, Node& boxes, int entry) {
-  if (last - first <= kLanes) return add_leaf(first, last, boxes, entry);
-  std::ptrdiff_t share = kLanes;  // of an entry, so that all leaves but the last are full
-  while (share * kLanes < last - first) share *= kLanes;
-  Node node;
-  int entries = 0;
-  divide(first, last, share, node, entries);
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.low[axis][entry] = *std::min_element(node.low[axis], node.low[axis] + entries);
-    boxes.high[axis][entry] = *std::max_element(node.high[axis], node.high[axis] + entries);
-    std::fill(node.low[axis] + entries, node.low[axis] + kLanes, kInfinity);
-    std::fill(node.high[axis] + entries, node.high[axis] + kLanes, kInfinity);
-  }
-  nodes_.push_back(node);
-  return static_cast<int>(nodes_.size()) - 1;
-}
-
-int PointTree::add_leaf(const Item* first, const Item* last, Node& boxes, int entry) {
-  Leaf leaf;
-  const auto count = static_cast<int>(last - first);
-  for (int axis = 0; axis < 3; ++axis) {
-    double* place = leaf.place[axis];
-    for (int i = 0; i < kLanes; ++i) place[i] = i < count ? first[i].place[axis] : kInfinity;
-    boxes.low[axis][entry] = *std::min_element(place, place + count);
-    boxes.high[axis][entry] = *std::max_element(place, place + count);
-  }
-  for (int i = 0; i < kLanes; ++i) leaf.row[i] = i < count ? first[i].row : kInfinity;
-  leaves_.push_back(leaf);
-  return leaf_number(leaves_.size() - 1);
-}
-
-/// Halves points across their longest extent until each part is one entry's share.
-void PointTree::divide(Item* first, Item* last, std::ptrdiff_t share, Node& node, int& entries) {
-  const std::ptrdiff_t parts = (last - first + share - 1) / share;
-  if (parts == 1) {
-    const int entry = entries++;
-    node.child[entry] = add(first, last, node, entry);
-    return;
-  }
-  double low[3], high[3];
-  std::copy_n(first->place, 3, low);
-  std::copy_n(first->place, 3, high);
-  for (const Item* item = first; item != last; ++item)
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], item->place[axis]);
-      high[axis] = std::max(high[axis], item->place[axis]);
+/// The points in their spatial order make the leaves, eight by eight; these make nodes, and so on.
+PointTree::PointTree(const Points& points, const ParallelFor& parallel) {
+  Indices order = spatial_order(points, parallel);
+  while (!order.empty() && !points.row(order.back()).allFinite()) order.pop_back();
+  leaves_.resize((order.size() + kLanes - 1) / kLanes);
+  std::vector<Box> boxes(leaves_.size());
+  for (std::size_t index = 0; index < leaves_.size(); ++index) {
+    Leaf& leaf = leaves_[index];
+    boxes[index].number = leaf_number(index);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const std::size_t at = kLanes * index + i;
+      const bool is_there = at < order.size();
+      leaf.row[i] = is_there ? order[at] : kInfinity;
+      for (int axis = 0; axis < 3; ++axis) {
+        leaf.place[axis][i] = is_there ? points(order[at], axis) : kInfinity;
+        if (is_there) boxes[index].add(axis, leaf.place[axis][i], leaf.place[axis][i]);
+      }
     }
-  int longest = 0;
-  for (const int axis : {1, 2})
-    if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-  Item* const middle = first + share * (parts / 2);
-  std::nth_element(first, middle, last,
-                   [longest](const Item& a, const Item& b) { return a.place[longest] < b.place[longest]; });
-  divide(first, middle, share, node, entries);
-  divide(middle, last, share, node, entries);
+  }
+  while (boxes.size() > 1) boxes = gather(boxes);
+  if (!boxes.empty()) root_ = boxes.front().number;
 }
 
-/// Eight queries, and what was found for each where it was searched last.
-struct alignas(64) NearestTracker::Group {
-  int query[kLanes];          // row among the queries; -1: no query
-  double place[3][kLanes];    // where the query was
-  double nearest[3][kLanes];  // the nearest point; infinite if none was near enough
-  double row[kLanes];         // of that point
-  double second[kLanes];      // distance of the next nearest; infinite if none was near enough
-  double clearance[kLanes];   // all points but the nearest are at least this far away; 0: nothing is known
+/// Makes nodes of eight boxes each.
+std::vector<PointTree::Box> PointTree::gather(const std::vector<Box>& boxes) {
+  std::vector<Box> larger;
+  for (std::size_t first = 0; first < boxes.size(); first += kLanes) {
+    Node node;
+    Box whole;
+    whole.number = static_cast<int>(nodes_.size());
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const bool is_there = first + i < boxes.size();
+      node.child[i] = is_there ? boxes[first + i].number : kNothing;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][i] = is_there ? boxes[first + i].low[axis] : kInfinity;
+        node.high[axis][i] = is_there ? boxes[first + i].high[axis] : kInfinity;
+        if (is_there) whole.add(axis, node.low[axis][i], node.high[axis][i]);
+      }
+    }
+    nodes_.push_back(node);
+    larger.push_back(whole);
+  }
+  return larger;
+}
+
+/// The queries, and what was found for each where it was searched last; `target` is infinite where nothing was near enough.
+struct NearestTracker::Followed : PointPairs {
+  AlignedColumn was[3];     // where the query was searched
+  AlignedColumn row;        // of the nearest point
+  AlignedColumn second;     // distance of the next nearest; infinite if none was near enough
+  AlignedColumn clearance;  // all points but the nearest are at least this far away; 0: nothing is known
+  Indices order, nearest;   // of those who ask by row
+
+  explicit Followed(std::size_t size) : row(size, kInfinity), second(size, kInfinity), clearance(size, 0) {
+    target_rows.resize(size);
+    for (int axis = 0; axis < 3; ++axis) {
+      source[axis].assign(size, kInfinity);
+      target[axis].assign(size, kInfinity);
+      was[axis].assign(size, 0);
+    }
+  }
 };
+
+NearestTracker::NearestTracker(const PointTree& tree, ParallelFor parallel)
+    : tree_(tree), parallel_(std::move(parallel)) {}
+NearestTracker::~NearestTracker() = default;
+
+NearestTracker::Followed& NearestTracker::follow(Eigen::Index count) {
+  const auto size = static_cast<std::size_t>(padded(static_cast<int>(count)));
+  return followed_.try_emplace(count, size).first->second;
+}
 
 /// The nearest of eight queries; lanes whose bound is negative are left alone.
 template <class Lanes>
 struct NearestTracker::Search {
   Lanes x, y, z, bound_squared;
-  Lanes best, second, row, nearest_x, nearest_y, nearest_z;  // infinite at first
+  Lanes best, second, row;  // infinite at first
+  Lanes leaf;               // that holds the nearest, by its place among the leaves
 
   struct Visit {
     double squared;
     int number;
   };
 
-  CORRAL_INLINE void look_at(const PointTree::Leaf& leaf) {
+  /// Of equally near points the one that was met first stays, or with ties the one of the lowest row.
+  template <bool kWithTies>
+  CORRAL_INLINE void look_at(const PointTree& tree, std::size_t index) {
+    const PointTree::Leaf& points = tree.leaves_[index];
+    const Lanes row_before = row;
     for (int i = 0; i < kLanes; ++i) {
-      const Lanes px = Lanes::fill(leaf.place[0][i]), py = Lanes::fill(leaf.place[1][i]),
-                  pz = Lanes::fill(leaf.place[2][i]), number = Lanes::fill(leaf.row[i]);
-      const Lanes dx = x - px, dy = y - py, dz = z - pz, squared = dx * dx + dy * dy + dz * dz;
+      const Lanes dx = x - Lanes::fill(points.place[0][i]), dy = y - Lanes::fill(points.place[1][i]),
+                  dz = z - Lanes::fill(points.place[2][i]), number = Lanes::fill(points.row[i]);
+      const Lanes squared = dx * dx + dy * dy + dz * dz;
       second = smaller(second, larger(best, squared));
-      // Of equally near ones the lowest row.
-      const Lanes rank = select(squared == best, number, select(squared < best, Lanes::fill(-1), row));
-      nearest_x = select(rank < row, px, nearest_x);
-      nearest_y = select(rank < row, py, nearest_y);
-      nearest_z = select(rank < row, pz, nearest_z);
-      row = select(rank < row, number, row);
+      if constexpr (kWithTies) {
+        const Lanes rank = select(squared == best, number, select(squared < best, Lanes::fill(-1), row));
+        row = select(rank < row, number, row);
+      } else {
+        row = select(squared < best, number, row);
+      }
       best = smaller(best, squared);
     }
+    leaf = select(row == row_before, leaf, Lanes::fill(static_cast<double>(index)));
   }
 
-  CORRAL_INLINE double bound() const { return -smallest(Lanes::fill(0) - smaller(second, bound_squared)); }
+  CORRAL_INLINE double bound() const { return largest(smaller(second, bound_squared)); }
 
   /// Puts the entries of a node that are near enough on top of those that wait, the nearest last.
   CORRAL_INLINE void unfold(const PointTree::Node& node, const Lanes (&low)[3], const Lanes (&high)[3], double limit,
@@ -138,20 +156,21 @@ struct NearestTracker::Search {
       return larger(Lanes::fill(0),
                     larger(Lanes::load(node.low[axis]) - high[axis], low[axis] - Lanes::load(node.high[axis])));
     };
-    const Lanes dx = gap(0), dy = gap(1), dz = gap(2);
+    const Lanes dx = gap(0), dy = gap(1), dz = gap(2), squared = dx * dx + dy * dy + dz * dz;
     double squares[kLanes];
-    (dx * dx + dy * dy + dz * dz).store(squares);
+    squared.store(squares);
     const int before = size;
-    for (int i = 0; i < kLanes; ++i) {
-      if (!(squares[i] <= limit) || squares[i] == kInfinity) continue;
-      int at = size++;
-      for (; at > before && waiting[at - 1].squared < squares[i]; --at) waiting[at] = waiting[at - 1];
-      waiting[at] = {squares[i], node.child[i]};
-    }
+    visit_lanes<Lanes>(squared <= Lanes::fill(std::min(limit, kLargest)), [&](std::size_t i) {
+      waiting[size] = {squares[i], node.child[i]};
+      if (size > before && waiting[size - 1].squared < squares[i]) std::swap(waiting[size - 1], waiting[size]);
+      ++size;
+    });
   }
 
   /// The box holds the lanes that are searched.
+  template <bool kWithTies>
   CORRAL_INLINE void run(const PointTree& tree, const double* box_low, const double* box_high) {
+    best = second = row = Lanes::fill(kInfinity);
     const Lanes low[3] = {Lanes::fill(box_low[0]), Lanes::fill(box_low[1]), Lanes::fill(box_low[2])},
                 high[3] = {Lanes::fill(box_high[0]), Lanes::fill(box_high[1]), Lanes::fill(box_high[2])};
     Visit waiting[kDeepest * kLanes];
@@ -162,7 +181,7 @@ struct NearestTracker::Search {
       const Visit visit = waiting[--size];
       if (visit.squared > limit) continue;
       if (visit.number < 0) {
-        look_at(tree.leaves_[PointTree::leaf_index(visit.number)]);
+        look_at<kWithTies>(tree, PointTree::leaf_index(visit.number));
         limit = bound();
       } else {
         unfold(tree.nodes_[static_cast<std::size_t>(visit.number)], low, high, limit, waiting, size);
@@ -171,94 +190,87 @@ struct NearestTracker::Search {
   }
 };
 
-NearestTracker::NearestTracker(const PointTree& tree) : tree_(tree) {}
-NearestTracker::~NearestTracker() = default;
+/// Finds the partners of some places, in whole registers.
+template <class Kind>
+void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t last, double limit) const {
+  using Lanes = typename Kind::Lanes;
+  const Lanes zero = Lanes::fill(0), one = Lanes::fill(1), none = Lanes::fill(kInfinity), most = Lanes::fill(kLargest),
+              limit_squared = Lanes::fill(limit * limit), farthest = Lanes::fill(kSlack * limit);
+  for (std::size_t place = first; place < last; place += kLanes) {
+    const Lanes x = Lanes::load(&f.source[0][place]), y = Lanes::load(&f.source[1][place]),
+                z = Lanes::load(&f.source[2][place]);
+    const auto squared_from = [&](const AlignedColumn(&other)[3]) {
+      const Lanes dx = x - Lanes::load(&other[0][place]), dy = y - Lanes::load(&other[1][place]),
+                  dz = z - Lanes::load(&other[2][place]);
+      return dx * dx + dy * dy + dz * dz;
+    };
+    const Lanes moved = square_root(squared_from(f.was));
+    const Lanes sure = larger(zero, Lanes::load(&f.clearance[place]) * Lanes::fill(1 - kRounding) - moved);
+    const Lanes is_finite = select(magnitude(x + y + z) <= most, one, zero);
+    const Lanes is_unsure = select(smaller(squared_from(f.target), limit_squared) < sure * sure, zero, is_finite);
+    double low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
+    visit_lanes<Lanes>(zero < is_unsure, [&](std::size_t lane) {
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], f.source[axis][place + lane]);
+        high[axis] = std::max(high[axis], f.source[axis][place + lane]);
+      }
+    });
+    if (low[0] < kInfinity) {
+      // The second nearest is not farther than before by more than the motion.
+      const Lanes reach = smaller(farthest, (Lanes::load(&f.second[place]) + moved) * Lanes::fill(1 + kRounding));
+      Search<Lanes> search{x, y, z, select(zero < is_unsure, reach * reach, Lanes::fill(-1)), none, none, none, none};
+      search.template run<false>(tree_, low, high);
+      bool has_ties = false;
+      visit_lanes<Lanes>(search.second <= smaller(search.best, most), [&](std::size_t) { has_ties = true; });
+      if (has_ties) search.template run<true>(tree_, low, high);
 
-/// The leaves of a tree over the queries hold neighbours; then come those that no tree takes.
-std::vector<NearestTracker::Group> NearestTracker::make_groups(const Points& queries) {
-  const PointTree order(queries);
-  Group empty{};
-  std::fill_n(empty.query, kLanes, -1);
-  std::fill_n(empty.second, kLanes, kInfinity);
-  std::vector<Group> groups(order.leaves_.size(), empty);
-  for (std::size_t leaf = 0; leaf < groups.size(); ++leaf)
-    for (int i = 0; i < kLanes; ++i)
-      if (order.leaves_[leaf].row[i] < kInfinity) groups[leaf].query[i] = static_cast<int>(order.leaves_[leaf].row[i]);
-  int lane = kLanes;
-  for (Eigen::Index row = 0; row < queries.rows(); ++row) {
-    if (queries.row(row).allFinite()) continue;
-    if (lane == kLanes) groups.push_back(empty), lane = 0;
-    groups.back().query[lane++] = static_cast<int>(row);
+      const auto keep = [&](const Lanes& found, AlignedColumn& column) {
+        select(zero < is_unsure, found, Lanes::load(&column[place])).store(&column[place]);
+      };
+      keep(x, f.was[0]);
+      keep(y, f.was[1]);
+      keep(z, f.was[2]);
+      keep(search.row, f.row);
+      keep(square_root(search.second), f.second);
+      keep(square_root(smaller(search.second, larger(search.bound_squared, zero))), f.clearance);
+      double leaves[kLanes];
+      search.leaf.store(leaves);
+      visit_lanes<Lanes>(zero < is_unsure, [&](std::size_t lane) {
+        const std::size_t at = place + lane;
+        for (AlignedColumn& column : f.target) column[at] = kInfinity;
+        if (f.row[at] == kInfinity) return;
+        const PointTree::Leaf& leaf = tree_.leaves_[static_cast<std::size_t>(leaves[lane])];
+        const auto i = std::find(leaf.row, leaf.row + kLanes - 1, f.row[at]) - leaf.row;
+        for (int axis = 0; axis < 3; ++axis) f.target[axis][at] = leaf.place[axis][i];
+      });
+    }
+    // Comparisons with a limit that is NaN fail.
+    select(squared_from(f.target) <= Lanes::fill(std::min(limit * limit, kLargest)), Lanes::load(&f.row[place]),
+           Lanes::fill(-1))
+        .store(&f.target_rows[place]);
   }
-  return groups;
+}
+
+const PointPairs& NearestTracker::pair(const Points& queries, double limit) {
+  Followed& followed = follow(queries.rows());
+  for (int axis = 0; axis < 3; ++axis)
+    std::copy_n(queries.col(axis).data(), queries.rows(), followed.source[axis].data());
+  const std::size_t size = followed.target_rows.size();
+  parallel_(static_cast<int>((size + kShare - 1) / kShare), [&](int share) {
+    const std::size_t first = static_cast<std::size_t>(share) * kShare;
+    vectorized([&](auto kind) { search(kind, followed, first, std::min(size, first + kShare), limit); });
+  });
+  return followed;
 }
 
 const Indices& NearestTracker::nearest(const Points& queries, double limit) {
-  const auto count = static_cast<std::size_t>(queries.rows());
-  const auto [place_of, is_new] = groups_.try_emplace(count);
-  if (is_new) place_of->second = make_groups(queries);
-  std::vector<Group>& groups = place_of->second;
-  nearest_.assign(count, -1);
-  const double limit_squared = limit * limit, farthest = kSlack * limit;
-
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes zero = Lanes::fill(0), none = Lanes::fill(kInfinity);
-    alignas(64) double place[3][kLanes] = {}, bounds[kLanes], squares[kLanes];
-
-    for (Group& group : groups) {
-      double low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
-      bool is_finite[kLanes], must_search = false;
-      for (int i = 0; i < kLanes; ++i) {
-        const Eigen::Index row = std::max(group.query[i], 0);
-        const double x = queries(row, 0), y = queries(row, 1), z = queries(row, 2);
-        is_finite[i] = group.query[i] >= 0 && std::isfinite(x + y + z);
-        place[0][i] = x, place[1][i] = y, place[2][i] = z;
-      }
-      const Lanes x = Lanes::load(place[0]), y = Lanes::load(place[1]), z = Lanes::load(place[2]);
-      const auto squared_from = [&](const double(&other)[3][kLanes]) {
-        const Lanes dx = x - Lanes::load(other[0]), dy = y - Lanes::load(other[1]), dz = z - Lanes::load(other[2]);
-        return dx * dx + dy * dy + dz * dz;
-      };
-      const Lanes moved = square_root(squared_from(group.place));
-      const Lanes sure = larger(zero, Lanes::load(group.clearance) * Lanes::fill(1 - kRounding) - moved);
-      // The second nearest is not farther than before by more than the motion.
-      const Lanes reach =
-          smaller(Lanes::fill(farthest), (Lanes::load(group.second) + moved) * Lanes::fill(1 + kRounding));
-      select(smaller(squared_from(group.nearest), Lanes::fill(limit_squared)) < sure * sure, Lanes::fill(-1),
-             reach * reach)
-          .store(bounds);
-      for (int i = 0; i < kLanes; ++i) {
-        if (!is_finite[i]) bounds[i] = -1;
-        if (!(bounds[i] >= 0)) continue;
-        must_search = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], place[axis][i]);
-          high[axis] = std::max(high[axis], place[axis][i]);
-        }
-      }
-      if (must_search) {
-        Search<Lanes> search{x, y, z, Lanes::load(bounds), none, none, none, none, none, none};
-        search.run(tree_, low, high);
-        const Lanes bound = search.bound_squared;
-        const auto keep = [&](const Lanes& found, double* to) {
-          select(bound < zero, Lanes::load(to), found).store(to);
-        };
-        for (int axis = 0; axis < 3; ++axis) keep(Lanes::load(place[axis]), group.place[axis]);
-        keep(search.nearest_x, group.nearest[0]);
-        keep(search.nearest_y, group.nearest[1]);
-        keep(search.nearest_z, group.nearest[2]);
-        keep(search.row, group.row);
-        keep(square_root(search.second), group.second);
-        keep(square_root(smaller(search.second, larger(bound, zero))), group.clearance);
-      }
-      squared_from(group.nearest).store(squares);
-      for (int i = 0; i < kLanes; ++i)
-        if (is_finite[i] && squares[i] <= limit_squared && group.row[i] < kInfinity)
-          nearest_[static_cast<std::size_t>(group.query[i])] = static_cast<int>(group.row[i]);
-    }
-  });
-  return nearest_;
+  Followed& followed = follow(queries.rows());
+  if (followed.order.empty()) followed.order = spatial_order(queries, parallel_);
+  const PointPairs& pairs = pair(queries(followed.order, Eigen::all), limit);
+  followed.nearest.resize(followed.order.size());
+  for (std::size_t i = 0; i < followed.order.size(); ++i)
+    followed.nearest[static_cast<std::size_t>(followed.order[i])] = pairs.target_rows[i];
+  return followed.nearest;
 }
 
 }  // namespace corral

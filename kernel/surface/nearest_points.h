@@ -4,6 +4,8 @@
 #include <map>
 #include <vector>
 
+#include "kernel/parallel.h"
+#include "kernel/point_pairs.h"
 #include "kernel/types.h"
 #include "kernel/vectorized.h"
 
@@ -14,15 +16,15 @@ namespace corral {
 class PointTree {
  public:
   /// Rows that are not finite are never found.
-  explicit PointTree(const Points& points);
+  explicit PointTree(const Points& points, const ParallelFor& parallel = one_by_one);
 
  private:
   friend class NearestTracker;
-  struct Node {  // of an entry that is not there, all places are infinite
+  struct alignas(64) Node {  // of an entry that is not there, all places are infinite
     double low[3][kLanes], high[3][kLanes];
     int child[kLanes];  // a node, or the number of a leaf
   };
-  struct Leaf {
+  struct alignas(64) Leaf {
     double place[3][kLanes];
     double row[kLanes];  // infinite where there is no point
   };
@@ -30,13 +32,11 @@ class PointTree {
   static int leaf_number(std::size_t index) { return -2 - static_cast<int>(index); }
   static std::size_t leaf_index(int number) { return static_cast<std::size_t>(-2 - number); }
 
-  struct Item;
-  int add(Item* first, Item* last, Node& boxes, int entry);
-  int add_leaf(const Item* first, const Item* last, Node& boxes, int entry);
-  void divide(Item* first, Item* last, std::ptrdiff_t share, Node& node, int& entries);
+  struct Box;
+  std::vector<Box> gather(const std::vector<Box>& boxes);
 
-  std::vector<Node> nodes_;
-  std::vector<Leaf> leaves_;
+  std::vector<Node, CacheLineAllocator<Node>> nodes_;
+  std::vector<Leaf, CacheLineAllocator<Leaf>> leaves_;
   int root_ = kNothing;
 };
 
@@ -53,22 +53,28 @@ class PointTree {
 class NearestTracker {
  public:
   /// The tree must outlive this.
-  explicit NearestTracker(const PointTree& tree);
+  explicit NearestTracker(const PointTree& tree, ParallelFor parallel = one_by_one);
   ~NearestTracker();
 
-  /// For each query (N x 3) the row of the nearest point, or -1 if none lies within the limit (inclusive, units of the
-  /// points) or the query is not finite. Valid until the next call.
+  /// Each query (N x 3) with the nearest point, if one lies within the limit (inclusive, units of the points) and the query
+  /// is finite. Valid until the next call. Fast if queries that follow each other lie next to each other (spatial_order).
+  const PointPairs& pair(const Points& queries, double limit);
+
+  /// The rows of those points, -1 where there is none; fast in any order. Valid until the next call.
   const Indices& nearest(const Points& queries, double limit);
 
  private:
-  struct Group;  // eight queries that lie next to each other
+  struct Followed;
   template <class Lanes>
   struct Search;
-  static std::vector<Group> make_groups(const Points& queries);
+  Followed& follow(Eigen::Index count);
+
+  template <class Kind>
+  void search(Kind kind, Followed& followed, std::size_t first, std::size_t last, double limit) const;
 
   const PointTree& tree_;
-  std::map<std::size_t, std::vector<Group>> groups_;  // by the number of queries: those of each level of a refinement
-  Indices nearest_;
+  ParallelFor parallel_;
+  std::map<Eigen::Index, Followed> followed_;  // by the number of queries: those of each level of a refinement
 };
 
 }  // namespace corral

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // icp_benchmark [--csv] [--benchmark_...] [MESH...]
-// Dense refinement of a mesh onto its moved and noisy copy, from 5 degrees and 5 pr away, beside PCL's iterative closest
-// points: CPU time in one thread, medians of three, and how far each leaves the vertices from the truth (root mean square,
-// pr). Without a mesh those of about 90,000 vertices that the default data give.
+// Dense refinement of a mesh onto its moved and noisy copy, from 5 degrees and 5 pr away, beside the iterative closest
+// points of PCL and Open3D: CPU time in one thread, medians of three, and how far each leaves the vertices from the truth
+// (root mean square, pr). Without a mesh those of about 90,000 vertices that the default data give.
 //   point-to-point   the same rounds over all points and the same limit on both sides; trees are built within the time
 //   coarse-to-fine   the same, but ours over samples first
-//   default          ours coarse to fine and by planes, with the normals estimated within the time; PCL as above
+//   default          ours coarse to fine and by planes, with the normals estimated within the time; the others as above
 
 #include <benchmark/benchmark.h>
 
@@ -27,9 +27,7 @@
 #include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 #include "tests/benchmarks/workload.h"
-#ifdef CORRAL_WITH_PCL
-#include "tests/peers/pcl_icp.h"
-#endif
+#include "tests/peers/icp.h"
 
 namespace corral::benchmarks {
 namespace {
@@ -65,10 +63,10 @@ struct Task {
 RefinedSurface refine_ours(const Task& task, const Points& normals, const SurfaceOptions& options) {
   const PointTree tree(task.target.vertices);
   NearestTracker tracker(tree);
-  const NearestRows nearest = [&](const Points& queries, double limit) -> const Indices& {
-    return tracker.nearest(queries, limit);
+  const NearestPairs pair = [&](const Points& queries, double limit) -> const PointPairs& {
+    return tracker.pair(queries, limit);
   };
-  return refine_surface({task.source.vertices, task.target.vertices, normals, task.resolution, nearest}, task.start,
+  return refine_surface({task.source.vertices, task.target.vertices, normals, task.resolution, pair}, task.start,
                         options);
 }
 
@@ -91,26 +89,23 @@ std::string error_text(const Task& task, const RefinedSurface& found) {
   return found.target_from_source ? task.error(*found.target_from_source) : to_text(found.status);
 }
 
+struct Peer {
+  std::string name;
+  peers::Icp icp;
+};
+
+/// Other libraries that are there, for one task.
+std::vector<Peer> peers_for(const Task& task) {
+  std::vector<Peer> found;
 #ifdef CORRAL_WITH_PCL
-struct Peer {
-  Setup setup;
-  std::string error, name = "pcl";
-};
-Peer peer(const Task& task, int rounds) {
-  const auto icp = std::make_shared<peers::PclIcp>(task.source.vertices, task.target.vertices);
-  const auto align = [icp, &task, rounds] { return icp->align(task.start, kLimit_pr * task.resolution, rounds); };
-  const auto found = align();
-  if (found.rounds != rounds) std::cerr << task.name << ": PCL ran " << found.rounds << " rounds\n";
-  return {[align]() -> Call { return [align] { benchmark::DoNotOptimize(align().rounds); }; },
-          task.error(found.target_from_source)};
-}
-#else
-struct Peer {
-  Setup setup;
-  std::string error = "-", name;
-};
-Peer peer(const Task&, int) { return {}; }
+  found.push_back({"pcl", peers::pcl_icp(task.source.vertices, task.target.vertices)});
 #endif
+#ifdef CORRAL_WITH_OPEN3D
+  found.push_back({"open3d", peers::open3d_icp(task.source.vertices, task.target.vertices)});
+#endif
+  if (found.empty()) found.push_back({});
+  return found;
+}
 
 void add(RatioTable& table, const Task& task) {
   const auto count_rounds = [](const RefinedSurface& found) {
@@ -118,22 +113,34 @@ void add(RatioTable& table, const Task& task) {
     for (const auto& level : found.levels) rounds += level.size();
     return static_cast<int>(rounds);
   };
-  const RefinedSurface first = by_points(task);
-  const Peer theirs = peer(task, count_rounds(first));
-  const auto add_way = [&](const char* way, RefinedSurface (*run)(const Task&)) {
-    const RefinedSurface found = run(task);
-    const std::size_t row = table.add_row({{task.name, std::to_string(task.source.vertices.rows()), way,
-                                            std::to_string(count_rounds(found)), error_text(task, found), theirs.error},
-                                           theirs.name});
-    const Setup ours = [&task, run]() -> Call {
-      return [&task, run] { benchmark::DoNotOptimize(run(task).condition); };
+  const int rounds = count_rounds(by_points(task));
+  for (const Peer& peer : peers_for(task)) {
+    std::string peer_error = "-";
+    Setup theirs;
+    if (peer.icp) {
+      const auto align = [icp = peer.icp, &task, rounds] {
+        return icp(task.start, kLimit_pr * task.resolution, rounds);
+      };
+      const peers::IcpResult found = align();
+      if (found.rounds != rounds) std::cerr << task.name << ": " << peer.name << " ran " << found.rounds << " rounds\n";
+      peer_error = task.error(found.target_from_source);
+      theirs = [align]() -> Call { return [align] { benchmark::DoNotOptimize(align().rounds); }; };
+    }
+    const auto add_way = [&](const char* way, RefinedSurface (*run)(const Task&)) {
+      const RefinedSurface found = run(task);
+      const std::size_t row = table.add_row({{task.name, std::to_string(task.source.vertices.rows()), way,
+                                              std::to_string(count_rounds(found)), error_text(task, found), peer_error},
+                                             peer.name});
+      const Setup ours = [&task, run]() -> Call {
+        return [&task, run] { benchmark::DoNotOptimize(run(task).condition); };
+      };
+      table.add_side(task.name + "/" + way, ours, row, Side::Ours, kRepetitions);
+      if (theirs) table.add_side(task.name + "/" + peer.name, theirs, row, Side::Peer, kRepetitions);
     };
-    table.add_side(task.name + "/" + way, ours, row, Side::Ours, kRepetitions);
-    if (theirs.setup) table.add_side(task.name + "/pcl", theirs.setup, row, Side::Peer, kRepetitions);
-  };
-  add_way("point-to-point", by_points);
-  add_way("coarse-to-fine", by_sampled_points);
-  add_way("default", by_default);
+    add_way("point-to-point", by_points);
+    add_way("coarse-to-fine", by_sampled_points);
+    add_way("default", by_default);
+  }
 }
 
 std::deque<Task> read_tasks(const std::vector<std::string>& paths, const fs::path& data) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "tests/peers/pcl_icp.h"
-
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
+
+#include "tests/peers/icp.h"
 
 namespace corral::peers {
 namespace {
@@ -26,32 +26,26 @@ Cloud::Ptr cloud_of(const Points& points) {
 
 }  // namespace
 
-struct PclIcp::Clouds {
-  Cloud::Ptr source, target;
-};
-
-PclIcp::PclIcp(const Points& source, const Points& target)
-    : clouds_(std::make_unique<Clouds>(Clouds{cloud_of(source), cloud_of(target)})) {}
-PclIcp::~PclIcp() = default;
-
-PclIcp::Result PclIcp::align(const RigidTransform& start, double limit, int rounds) const {
-  CountingIcp icp;
-  icp.setInputSource(clouds_->source);
-  icp.setInputTarget(clouds_->target);
-  icp.setMaxCorrespondenceDistance(limit);
-  icp.setMaximumIterations(rounds);
-  // No other criterion may end it: each counts as met where a change is below its threshold.
-  icp.setTransformationEpsilon(-1);
-  icp.setTransformationRotationEpsilon(2);
-  icp.setEuclideanFitnessEpsilon(-1);
-  icp.getConvergeCriteria()->setAbsoluteMSE(-1);
-  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
-  guess.topLeftCorner<3, 3>() = start.rotation.cast<float>();
-  guess.topRightCorner<3, 1>() = start.translation.cast<float>();
-  Cloud aligned;
-  icp.align(aligned, guess);
-  const Eigen::Matrix4d pose = icp.getFinalTransformation().cast<double>();
-  return {{pose.topLeftCorner<3, 3>(), pose.topRightCorner<3, 1>()}, icp.rounds()};
+Icp pcl_icp(const Points& source, const Points& target) {
+  return [from = cloud_of(source), to = cloud_of(target)](const RigidTransform& start, double limit, int rounds) {
+    CountingIcp icp;
+    icp.setInputSource(from);
+    icp.setInputTarget(to);
+    icp.setMaxCorrespondenceDistance(limit);
+    icp.setMaximumIterations(rounds);
+    // No other criterion may end it: each counts as met where a change is below its threshold.
+    icp.setTransformationEpsilon(-1);
+    icp.setTransformationRotationEpsilon(2);
+    icp.setEuclideanFitnessEpsilon(-1);
+    icp.getConvergeCriteria()->setAbsoluteMSE(-1);
+    Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+    guess.topLeftCorner<3, 3>() = start.rotation.cast<float>();
+    guess.topRightCorner<3, 1>() = start.translation.cast<float>();
+    Cloud aligned;
+    icp.align(aligned, guess);
+    const Eigen::Matrix4d pose = icp.getFinalTransformation().cast<double>();
+    return IcpResult{{pose.topLeftCorner<3, 3>(), pose.topRightCorner<3, 1>()}, icp.rounds()};
+  };
 }
 
 }  // namespace corral::peers

@@ -16,6 +16,7 @@
 #include "kernel/surface/normals.h"
 #include "kernel/surface/perturbation.h"
 #include "kernel/surface/resolution.h"
+#include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 
 namespace corral {
@@ -57,10 +58,10 @@ RefinedSurface refine(const Points& source, const Surface& target, const RigidTr
                       const SurfaceOptions& options = {}, double pr = 1) {
   const PointTree tree(target.points);
   NearestTracker tracker(tree);
-  const NearestRows nearest = [&](const Points& queries, double limit) -> const Indices& {
-    return tracker.nearest(queries, limit);
+  const NearestPairs pair = [&](const Points& queries, double limit) -> const PointPairs& {
+    return tracker.pair(queries, limit);
   };
-  return refine_surface({source, target.points, target.normals, pr, nearest}, start, options);
+  return refine_surface({source, target.points, target.normals, pr, pair}, start, options);
 }
 
 SurfaceOptions with(SurfaceResidual residual) {
@@ -94,6 +95,27 @@ TEST(RefineSurface, KnownMotionIsRecovered) {
       EXPECT_LT(found.after.rms_pr, found.before.rms_pr);
       EXPECT_EQ(found.levels.size(), 3u);
     }
+}
+
+TEST(RefineSurface, ThreadsDoNotShow) {
+  const Surface target = landscape(0, 2 * kSide, 1), source = landscape(0, 2 * kSide, 2);
+  const PointTree tree(target.points);
+  for (const SurfaceResidual residual : kResiduals) {
+    const SurfaceOptions options = with(residual);
+    const RefinedSurface expected = refine(source.points, target, start_off(3, 3, 1), options);
+    ASSERT_TRUE(expected.target_from_source.has_value());
+    for (const ParallelFor& parallel : {ParallelFor(testing::last_first), ParallelFor(testing::on_three_threads)}) {
+      NearestTracker tracker(tree, parallel);
+      const NearestPairs pair = [&](const Points& queries, double limit) -> const PointPairs& {
+        return tracker.pair(queries, limit);
+      };
+      const RefinedSurface found = refine_surface({source.points, target.points, target.normals, 1, pair, parallel},
+                                                  start_off(3, 3, 1), options);
+      EXPECT_EQ(found.target_from_source->rotation, expected.target_from_source->rotation);
+      EXPECT_EQ(found.target_from_source->translation, expected.target_from_source->translation);
+      EXPECT_EQ(found.condition, expected.condition);
+    }
+  }
 }
 
 TEST(RefineSurface, UnitsDoNotMatter) {
@@ -162,8 +184,9 @@ TEST(RefineSurface, CostNeverRisesWithinALevel) {
 TEST(RefineSurface, SameInputSameBytes) {
   const Surface target = landscape(0, kSide, 10), source = landscape(0, kSide, 11);
   for (const SurfaceResidual residual : kResiduals) {
-    const auto once = refine(source.points, target, start_off(5, 3, 1), with(residual));
-    const auto twice = refine(source.points, target, start_off(5, 3, 1), with(residual));
+    const SurfaceOptions options = with(residual);
+    const auto once = refine(source.points, target, start_off(5, 3, 1), options);
+    const auto twice = refine(source.points, target, start_off(5, 3, 1), options);
     ASSERT_TRUE(once.target_from_source && twice.target_from_source);
     EXPECT_EQ(std::memcmp(&*once.target_from_source, &*twice.target_from_source, sizeof(RigidTransform)), 0);
     ASSERT_EQ(once.levels.back().size(), twice.levels.back().size());

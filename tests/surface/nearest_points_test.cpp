@@ -111,6 +111,52 @@ TEST(NearestPoints, QueriesAreFollowedExactly) {
   EXPECT_EQ(tracker.nearest(fewer, 0.2), by_brute_force(points, fewer, 0.2));
 }
 
+/// Every point twice, in different rows, and queries on the points, between them and around.
+TEST(NearestPoints, OfTwinsTheLowerRowIsFound) {
+  const Points once = testing::bumpy_sphere(3, 6).vertices, points = testing::stacked({once.colwise().reverse(), once});
+  const PointTree tree(points);
+  NearestTracker tracker(tree);
+  for (const double scale : {1.0, 1.02, 1.1}) {
+    const Points queries = scale * points;
+    EXPECT_EQ(tracker.nearest(queries, 0.2), by_brute_force(points, queries, 0.2)) << scale;
+  }
+}
+
+TEST(NearestPoints, PairsHoldThePlacesOfBothSides) {
+  const Points points = testing::uniform_points(3000, 10), queries = testing::uniform_points(1003, 11);
+  const PointTree tree(points);
+  const Indices expected = by_brute_force(points, queries, 0.08);
+  NearestTracker tracker(tree);
+  for (int time = 0; time < 2; ++time) {
+    const PointPairs& pairs = tracker.pair(queries, 0.08);
+    ASSERT_EQ(pairs.target_rows.size(), 1008u) << "whole registers";
+    for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(pairs.target[axis].size(), pairs.source[axis].size());
+    int found = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_EQ(pairs.target_rows[i], expected[i]);
+      if (expected[i] < 0) continue;
+      ++found;
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(pairs.source[axis][i], queries(static_cast<Eigen::Index>(i), axis));
+        EXPECT_EQ(pairs.target[axis][i], points(expected[i], axis));
+      }
+    }
+    EXPECT_GT(found, 100);
+    EXPECT_LT(found, 900);
+    EXPECT_THAT(Indices(pairs.target_rows.begin() + 1003, pairs.target_rows.end()), Each(-1));
+  }
+}
+
+TEST(NearestPoints, ThreadsDoNotShow) {
+  const Points points = testing::uniform_points(9000, 12), queries = testing::uniform_points(9000, 13);
+  const PointTree tree(points);
+  const Indices expected = NearestTracker(tree).nearest(queries, 0.1);
+  for (const ParallelFor& parallel : {ParallelFor(testing::last_first), ParallelFor(testing::on_three_threads)}) {
+    const PointTree same(points, parallel);
+    EXPECT_EQ(NearestTracker(same, parallel).nearest(queries, 0.1), expected);
+  }
+}
+
 TEST(NearestPoints, WhatIsNotFiniteIsNeverFound) {
   Points points = testing::uniform_points(100, 6);
   const PointTree whole(points);
