@@ -96,14 +96,15 @@ class SurfaceRefiner {
         options_(options),
         unit_(surfaces.resolution),
         source_(surfaces.source(spatial_order(surfaces.source, surfaces.parallel), Eigen::all)) {
-    for (Eigen::Index row = 0; row < surfaces.target_normals.rows(); ++row)
-      has_normal_.push_back(surfaces.target_normals.row(row).squaredNorm() > 0);
+    const Eigen::VectorXd squares = surfaces.target_normals.rowwise().squaredNorm();
+    for (const double square : squares) has_normal_.push_back(square > 0);
   }
 
   RefinedSurface run(const RigidTransform& start) {
     pose_ = start;
     const double last_limit_pr = options_.levels.back().limit_pr;
-    const Pairing before = pair_all(last_limit_pr);
+    take(options_.levels.front().step);
+    const Pairing before = pair(last_limit_pr);
     result_.before = {before.overlap(), before.rms_pr()};
     for (const SurfaceLevel& level : options_.levels) {
       if (refine(level)) continue;
@@ -128,6 +129,8 @@ class SurfaceRefiner {
 
   /// Every so manieth source point in spatial order.
   void take(int step) {
+    if (step == taken_step_) return;
+    taken_step_ = step;
     const Eigen::Index count = (source_.rows() + step - 1) / step;
     taken_ = source_(Eigen::seqN(0, count, step), Eigen::all);
     if (count == 0) return;
@@ -142,7 +145,9 @@ class SurfaceRefiner {
 
   template <class Columns>
   Pairing pair_by(double limit_pr) {
-    pairs_ = &surfaces_.pair(pose_.apply(taken_), limit_pr * unit_);
+    moved_.noalias() = taken_ * pose_.rotation.transpose();
+    moved_.rowwise() += pose_.translation.transpose();
+    pairs_ = &surfaces_.pair(moved_, limit_pr * unit_);
     centre_ = pose_.rotation * taken_mean_ + pose_.translation;
     Pairing pairing;
     pairing.points = taken_.rows();
@@ -206,14 +211,10 @@ class SurfaceRefiner {
     return pairs;
   }
 
-  Pairing pair_all(double limit_pr) {
-    take(1);
-    return pair(limit_pr);
-  }
-
   /// The last word on a pose: overlap, residual and condition over all points.
   Pairing finish(double limit_pr) {
-    const Pairing after = pair_all(limit_pr);
+    take(1);
+    const Pairing after = pair(limit_pr);
     result_.after = {after.overlap(), after.rms_pr()};
     result_.condition = condition(after.pairs);
     return after;
@@ -283,7 +284,8 @@ class SurfaceRefiner {
   RigidTransform pose_;
   const PointPairs* pairs_ = nullptr;  // of the last pose
   AlignedColumn is_pair_;              // 1 or 0 for each of them
-  Points taken_;
+  Points taken_, moved_;
+  int taken_step_ = 0;
   Eigen::Vector3d taken_mean_ = Eigen::Vector3d::Zero();
   double size_pr_ = 0;                                // root mean square distance of the taken points from their mean
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // of the moved points, mesh units

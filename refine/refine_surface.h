@@ -33,7 +33,7 @@ enum class SurfaceResidual {
 
 struct SurfaceLevel {
   double limit_pr;       ///< points farther apart are no pair
-  int step;              ///< every so manieth source point takes part
+  int step;              ///< every so manieth source point takes part, evenly spread over the surface
   int most_rounds = 50;  ///< of pairing and fitting
 };
 
@@ -55,7 +55,7 @@ enum class SurfaceStatus {
 /// "refined", "too little overlap", "degenerate geometry", "diverged".
 const char* to_text(SurfaceStatus status);
 
-/// How a pose lays all source points on the target, within the limit of the last level.
+/// How a pose lays source points on the target, within the limit of the last level.
 struct SurfaceFit {
   double overlap = 0;  ///< share of source points with a partner
   double rms_pr = 0;   ///< root mean square residual over the pairs, pr; 0 if there are none
@@ -71,7 +71,8 @@ struct SurfaceRound {
 struct RefinedSurface {
   SurfaceStatus status = SurfaceStatus::TooLittleOverlap;
   std::optional<RigidTransform> target_from_source;  ///< absent unless the status is Refined
-  SurfaceFit before, after;                          ///< at the start, and at the last pose that was looked at
+  SurfaceFit before;                                 ///< at the start, over the points of the first level
+  SurfaceFit after;                                  ///< at the last pose that was looked at, over all points
   double condition = 0;                              ///< of the normal equations there; infinite if singular
   std::vector<std::vector<SurfaceRound>> levels;     ///< the rounds of each level that was reached
 };
