@@ -119,19 +119,25 @@ class LeaderSearch {
   int run(Eigen::VectorXd& entries) {
     const Eigen::Index size = entries.size();
     Eigen::MatrixXd basis(size, kProducts), products(size, kProducts);
-    Eigen::VectorXd diagonal(kProducts), off_diagonal(kProducts), next = entries, rounded, product;
+    Eigen::VectorXd diagonal(kProducts), off_diagonal(kProducts), next = entries, product, projection;
     double norm = next.norm();
     for (int used = 1;; ++used) {
       const int last = used - 1;
-      rounded = next / norm;
-      graph_.matrix.round_and_multiply(rounded, product);
+      next /= norm;
+      graph_.matrix.round_and_multiply(next, product);
       product = product.cwiseProduct(graph_.takes_part);
-      basis.col(last) = rounded;
-      products.col(last) = product;
-      diagonal(last) = rounded.dot(product);
-      // Of all, not of the last two alone: what rounding leaves of the first grows fastest.
-      next = product;
-      next.noalias() -= basis.leftCols(used) * (basis.leftCols(used).transpose() * product);
+      if (last > 0) {  // What rounding brought in of the others goes out again, and out of the product.
+        projection.noalias() = basis.leftCols(last).transpose() * next;
+        next.noalias() -= basis.leftCols(last) * projection;
+        product.noalias() -= products.leftCols(last) * projection;
+      }
+      norm = next.norm();
+      basis.col(last) = next / norm;
+      products.col(last) = product / norm;
+      projection.noalias() = basis.leftCols(used).transpose() * products.col(last);
+      diagonal(last) = projection(last);
+      next = products.col(last);
+      next.noalias() -= basis.leftCols(used) * projection;
       norm = off_diagonal(last) = next.norm();
       const Eigenpair pair = largest_of_tridiagonal(diagonal, off_diagonal, used);
       const double residual = norm * std::abs(pair.vector(last)) / pair.vector.norm();
