@@ -2,6 +2,7 @@
 #include "grouping/spectral.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "grouping/compatibility.h"
@@ -13,9 +14,6 @@ namespace {
 
 constexpr double kTie = 1e-9;
 constexpr int kNobody = -1;
-
-/// So few nodes that a lead of count^(-5/2) in the eigenvector is no tie.
-constexpr int kClearLead = 3900;
 
 /// r(i,j) where it reaches `similarity`, else 0; 1 on the diagonal.
 Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similarity) {
@@ -88,13 +86,20 @@ class Alive {
  private:
   /// The first node that is compatible with all others. Where M has no entries but 0 and 1 it is the one that choose()
   /// looks for: x_f = S / l, with S the sum of all entries and l the eigenvalue. A node that misses somebody has
-  /// x_i = (S - what it misses) / l, and misses at least one x_k >= x_f / (l - 1), for k is compatible with f and with
-  /// itself. With x_f >= count^(-1/2) and l <= count the lead of f is at least count^(-5/2).
+  /// x_i = (S - what it misses) / l and misses at least one x_k. That k has x_k >= x_f / (l - 1), for it is compatible with f
+  /// and with itself; and x_k >= (S - (count - degree) x_f) / l, for nobody exceeds f. With x_f >= count^(-1/2) and l between
+  /// the mean degree and count, f leads by count^(-5/2) at least, or (mean degree - count + least degree) times that.
   int compatible_with_all() const {
-    if (!is_binary_ || count_ > kClearLead) return kNobody;
-    for (int node = 0; node < takes_part_.size(); ++node)
-      if (takes_part_(node) > 0 && degrees_(node) == count_) return node;
-    return kNobody;
+    if (!is_binary_) return kNobody;
+    double least = count_;
+    int first = kNobody;
+    for (int node = 0; node < takes_part_.size(); ++node) {
+      if (!(takes_part_(node) > 0)) continue;
+      least = std::min(least, degrees_(node));
+      if (first == kNobody && degrees_(node) == count_) first = node;
+    }
+    const double factor = std::max(1.0, sum_of_squares_ / count_ - count_ + least);
+    return factor * std::pow(count_, -2.5) > 2 * kTie ? first : kNobody;
   }
 
   void remove(int node) {
