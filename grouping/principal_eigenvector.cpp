@@ -85,7 +85,7 @@ class Solver {
 /// The largest eigenvalue of a symmetric tridiagonal matrix, and its eigenvector of some length.
 ///
 /// p_k = x - a_k, p_i = x - a_i - b_i^2 / p_(i+1): x is the largest eigenvalue where p_1 = 0 and all others are positive.
-/// There p_1 is concave, so that Newton's steps from below stay below.
+/// There p_1 is concave, so that Newton's steps from below stay below; where it is not, the interval is halved.
 Eigenpair largest_of_tridiagonal(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::Index size) {
   Eigen::VectorXd p(size);
   double low = a.head(size).maxCoeff(), high = low + 2 * (size > 1 ? b.head(size - 1).maxCoeff() : 0), x = low;
@@ -121,6 +121,7 @@ class LeaderSearch {
     Eigen::MatrixXd basis(size, kProducts), products(size, kProducts);
     Eigen::VectorXd diagonal(kProducts), off_diagonal(kProducts), next = entries, product, projection;
     double norm = next.norm();
+    if (!(norm > 0)) return kUncertain;
     for (int used = 1;; ++used) {
       const int last = used - 1;
       next /= norm;
