@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "kernel/correspondence_set.h"
@@ -31,14 +32,19 @@ inline PairDistances pair_distances(const CorrespondenceSet& matches, int i, int
   return {point_distance(matches.source_points, i, j), point_distance(matches.target_points, i, j)};
 }
 
-/// Distinctiveness of each match, 1 - d1/d2: 0 where the second nearest feature is absent or coincides (d2 <= 0). Finite,
-/// also where d1/d2 is not.
+/// d1/d2 of each match; NaN where the second nearest feature is absent or coincides (d2 <= 0). Needs both columns.
+std::vector<double> feature_ratios(const CorrespondenceSet& matches);
+
+/// Distinctiveness of each match, 1 - d1/d2: 0 where the ratio is NaN. Finite, also where d1/d2 is not.
 ///
-/// Source    [yang2017evaluation] eq. (2), [lowe2004distinctive]. Needs both feature distances.
-std::vector<double> ratio_scores(const CorrespondenceSet& matches);
+/// Source    [yang2017evaluation] eq. (2), [lowe2004distinctive].
+std::vector<double> ratio_scores(const std::vector<double>& ratios);
 
 /// Lowe's test on one match: d2 > 0 and d1/d2 <= maximum_ratio (rounding makes 1 - d1/d2 >= 1 - maximum_ratio another test).
 inline bool passes_ratio_test(double d1, double d2, double maximum_ratio) { return d2 > 0 && d1 / d2 <= maximum_ratio; }
+
+/// The rows with a mark of 1; the others have 0.
+Indices marked_rows(const std::vector<std::uint8_t>& marks);
 
 /// The rigid motion that one match alone proposes by its two frames: R = L'^T L, t = p' - R p.
 RigidTransform transform_from_frames(const CorrespondenceSet& matches, int row);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -17,17 +18,18 @@ constexpr int kTogether = 4;  // blocks whose sums are looked up together
 
 int blocks_of(int columns) { return (columns + kBits - 1) / kBits; }
 
+using Number = std::int32_t;
+using Numbers = std::vector<Number, CacheLineAllocator<Number>>;
+
 /// The sums of every subset of four numbers, that of the numbers named by the bits of i at i.
 struct alignas(64) SubsetSums {
-  double at[16];
+  Number at[16];
 };
 
-SubsetSums add_up(const double* numbers, int count) {
+SubsetSums add_up(const Number* numbers) {
   SubsetSums sums{};
-  for (int bit = 0; bit < 4; ++bit) {
-    const double number = bit < count ? numbers[bit] : 0;
-    for (int i = 0; i < 1 << bit; ++i) sums.at[(1 << bit) + i] = sums.at[i] + number;
-  }
+  for (int bit = 0; bit < 4; ++bit)
+    for (int i = 0; i < 1 << bit; ++i) sums.at[(1 << bit) + i] = sums.at[i] + numbers[bit];
   return sums;
 }
 
@@ -35,41 +37,36 @@ SubsetSums add_up(const double* numbers, int count) {
 using Tables = std::array<std::array<SubsetSums, 2>, kTogether>;
 
 /// to[row] += what the bytes of the row name in the tables.
-template <class Lanes>
-CORRAL_INLINE void look_up(const Tables& tables, const std::uint8_t* const (&bytes)[kTogether], int rows, double* to) {
+template <class Floats>
+CORRAL_INLINE void look_up(const Tables& tables, const std::uint8_t* const (&bytes)[kTogether], int rows, Number* to) {
   // A table of both halves, which stays in the cache.
   static_assert(kTogether == 4);
-  double sums[kTogether][256];
+  Number sums[kTogether][256];
   for (int k = 0; k < kTogether; ++k)
     for (int i = 0; i < 256; ++i)
       sums[k][i] =
           tables[static_cast<std::size_t>(k)][0].at[i % 16] + tables[static_cast<std::size_t>(k)][1].at[i / 16];
-  for (int row = 0; row < rows; ++row) {
-    double sum = (sums[0][bytes[0][row]] + sums[1][bytes[1][row]]) + (sums[2][bytes[2][row]] + sums[3][bytes[3][row]]);
-    asm("" : "+x"(sum));  // compilers that gather or collect the numbers into registers make it slower
-    to[row] += sum;
-  }
+  for (int row = 0; row < rows; ++row)
+    to[row] += sums[0][bytes[0][row]] + sums[1][bytes[1][row]] + sums[2][bytes[2][row]] + sums[3][bytes[3][row]];
 }
 
-/// The same, to the last bit, where a register of indices looks up in two registers of sums.
+/// The same where a register of indices looks up in a register of sums.
 template <>
-CORRAL_INLINE void look_up<lanes::Lanes8>(const Tables& tables, const std::uint8_t* const (&bytes)[kTogether], int rows,
-                                          double* to) {
-  using Words [[gnu::vector_size(64)]] = std::int64_t;
-  using Bytes = std::uint8_t[kLanes];
-  lanes::Double8 sums[kTogether][2][2];
+CORRAL_INLINE void look_up<lanes::Floats16>(const Tables& tables, const std::uint8_t* const (&bytes)[kTogether],
+                                            int rows, Number* to) {
+  using Words = lanes::Integers16;
+  using Bytes = std::uint8_t[kFloatLanes];
+  Words sums[kTogether][2];
   std::memcpy(&sums, &tables, sizeof(sums));
-  for (int row = 0; row < rows; row += kLanes) {
-    lanes::Double8 of_block[kTogether];
+  for (int row = 0; row < rows; row += kFloatLanes) {
+    Words sum;
+    std::memcpy(&sum, to + row, sizeof(sum));
     for (int k = 0; k < kTogether; ++k) {
       Words lower;  // g++ 12 would convert byte by byte
-      asm("vpmovzxbq %1, %0" : "=v"(lower) : "m"(*reinterpret_cast<const Bytes*>(bytes[k] + row)));
-      const Words upper = lower >> 4;
-      of_block[k] = __builtin_shuffle(sums[k][0][0], sums[k][0][1], lower) +
-                    __builtin_shuffle(sums[k][1][0], sums[k][1][1], upper);
+      asm("vpmovzxbd %1, %0" : "=v"(lower) : "m"(*reinterpret_cast<const Bytes*>(bytes[k] + row)));
+      sum += __builtin_shuffle(sums[k][0], lower) + __builtin_shuffle(sums[k][1], lower >> 4);
     }
-    const auto before = lanes::Lanes8::load(to + row);
-    (before + lanes::Lanes8{(of_block[0] + of_block[1]) + (of_block[2] + of_block[3])}).store(to + row);
+    std::memcpy(to + row, &sum, sizeof(sum));
   }
 }
 
@@ -106,23 +103,36 @@ double CompatibilityGraph::memory(int rows) {
 }
 
 void CompatibilityGraph::multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const {
-  AlignedColumn sums(stride_, 0);
+  Eigen::VectorXd rest = from, rounded, product;
+  to = Eigen::VectorXd::Zero(size_);
+  for (int part = 0; part < 3; ++part) {  // what remains then is nothing beside the rounding of the sum
+    rounded = rest;
+    round_and_multiply(rounded, product);
+    to += product;
+    rest -= rounded;
+  }
+}
+
+void CompatibilityGraph::round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const {
+  const double total = numbers.cwiseAbs().sum();
+  const double scale = total > 0 ? std::ldexp(1.0, std::clamp(30 - std::ilogb(total), -1000, 1000)) : 1;
+  Numbers whole(static_cast<std::size_t>(kBits * padded(blocks_of(size_), kTogether)), 0), sums(stride_, 0);
+  for (int i = 0; i < size_; ++i) whole[static_cast<std::size_t>(i)] = static_cast<Number>(numbers(i) * scale);
+  numbers = Eigen::Map<const Eigen::Matrix<Number, -1, 1>>(whole.data(), size_).cast<double>() / scale;
   vectorized([&](auto kind) {
     for (int block = 0; block < blocks_of(size_); block += kTogether) {
       Tables tables;
       const std::uint8_t* columns[kTogether];
       for (int k = 0; k < kTogether; ++k) {
         columns[k] = bytes(block + k);
-        for (int half = 0; half < 2; ++half) {
-          const int first = std::min(kBits * (block + k) + 4 * half, size_);
+        for (int half = 0; half < 2; ++half)
           tables[static_cast<std::size_t>(k)][static_cast<std::size_t>(half)] =
-              add_up(from.data() + first, size_ - first);
-        }
+              add_up(whole.data() + kBits * (block + k) + 4 * half);
       }
-      look_up<typename decltype(kind)::Lanes>(tables, columns, size_, sums.data());
+      look_up<typename decltype(kind)::Floats>(tables, columns, size_, sums.data());
     }
   });
-  to = Eigen::Map<const Eigen::VectorXd>(sums.data(), size_);
+  to = Eigen::Map<const Eigen::Matrix<Number, -1, 1>>(sums.data(), size_).cast<double>() / scale;
 }
 
 Eigen::VectorXd CompatibilityGraph::degrees() const {
@@ -147,8 +157,9 @@ std::unique_ptr<GraphMatrix> CompatibilityGraph::restricted(const Indices& nodes
     if (block != std::exchange(copied, block))
       std::transform(nodes.begin(), nodes.end(), rows.begin(), [of = bytes(block)](int row) { return of[row]; });
     std::uint8_t* const to = some->bytes(column / kBits);
+    const auto mask = static_cast<std::uint8_t>(1 << from), set = static_cast<std::uint8_t>(1 << bit);
     for (std::size_t row = 0; row < rows.size(); ++row)
-      to[row] = static_cast<std::uint8_t>(to[row] | (rows[row] >> from & 1) << bit);
+      to[row] = static_cast<std::uint8_t>(to[row] | ((rows[row] & mask) == mask ? set : 0));
   }
   return some;
 }

@@ -13,7 +13,8 @@ namespace corral {
 ///
 ///   M_ij = [ r(i,j) >= similarity ],  M_ii = 1,   r the rigidity ratio
 ///
-/// Eight columns share a byte. A product looks each byte up in a table of the 256 sums of eight numbers ("four Russians").
+/// Eight columns share a byte. A product looks each byte up in tables of the sums of its numbers ("four Russians"). Sums are
+/// whole numbers and therefore exact: a number is a multiple of a power of two, so small that no sum reaches 2^31.
 class CompatibilityGraph : public GraphMatrix {
  public:
   CompatibilityGraph(const CorrespondenceSet& matches, double similarity);
@@ -23,6 +24,7 @@ class CompatibilityGraph : public GraphMatrix {
 
   int size() const override { return size_; }
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override;
+  void round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const override;
   Eigen::VectorXd degrees() const override;
   double sum_of_squares() const override { return degrees().sum(); }
   void get_column(int node, Eigen::VectorXd& column) const override;

@@ -13,35 +13,52 @@ constexpr double kUnitRoundoff = 0x1p-24;
 constexpr double kSlack = 16 * kUnitRoundoff;  // for the few roundings of a test and of its constants
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// The middle of the bounding box; zero for no points.
-Eigen::Vector3d center(const Points& points) {
-  if (points.rows() == 0) return Eigen::Vector3d::Zero();
-  return (0.5 * points.colwise().minCoeff() + 0.5 * points.colwise().maxCoeff()).transpose();
-}
+/// The bounding box of some points; of none, the origin.
+struct Box {
+  explicit Box(const Points& points) {
+    if (points.rows() == 0) return;
+    vectorized([&](auto kind) {
+      using Lanes = typename decltype(kind)::Lanes;
+      const Eigen::Index whole = points.rows() - points.rows() % kLanes;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double* const column = points.col(axis).data();
+        Lanes least = Lanes::fill(column[0]), most = least;
+        for (Eigen::Index row = 0; row < whole; row += kLanes) {
+          const Lanes place = Lanes::load(column + row);
+          least = smaller(least, place), most = larger(most, place);
+        }
+        low(axis) = smallest(least), high(axis) = -smallest(Lanes::fill(0) - most);
+        for (Eigen::Index row = whole; row < points.rows(); ++row) {
+          low(axis) = std::min(low(axis), column[row]);
+          high(axis) = std::max(high(axis), column[row]);
+        }
+      }
+    });
+  }
+  Eigen::Vector3d middle() const { return 0.5 * low + 0.5 * high; }
+  /// The largest coordinate of a point, seen from the middle: rounding keeps the order of differences.
+  double reach() const { return (low - middle()).cwiseAbs().cwiseMax((high - middle()).cwiseAbs()).maxCoeff(); }
 
-double reach_from(const Points& points, const Eigen::Vector3d& origin) {
-  return points.rows() == 0 ? 0 : (points.rowwise() - origin.transpose()).cwiseAbs().maxCoeff();
-}
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+};
 
 std::array<FloatColumn, 3> rounded(const Points& points, const Eigen::Vector3d& origin, double scale) {
   std::array<FloatColumn, 3> columns;
   for (int axis = 0; axis < 3; ++axis) {
     FloatColumn& column = columns[static_cast<std::size_t>(axis)];
     column.assign(static_cast<std::size_t>(padded(static_cast<int>(points.rows()), kFloatLanes)), kNothing);
-    for (Eigen::Index row = 0; row < points.rows(); ++row)
-      column[static_cast<std::size_t>(row)] = static_cast<float>((points(row, axis) - origin(axis)) * scale);
+    Eigen::Map<Eigen::VectorXf>(column.data(), points.rows()) =
+        ((points.col(axis).array() - origin(axis)) * scale).cast<float>();
   }
   return columns;
 }
 
 }  // namespace
 
-FilterTable::FilterTable(const CorrespondenceSet& matches)
-    : rows_(matches.size()),
-      source_origin_(center(matches.source_points)),
-      target_origin_(center(matches.target_points)) {
-  const double extent =
-      std::max(reach_from(matches.source_points, source_origin_), reach_from(matches.target_points, target_origin_));
+FilterTable::FilterTable(const CorrespondenceSet& matches) : rows_(matches.size()) {
+  const Box source(matches.source_points), target(matches.target_points);
+  source_origin_ = source.middle(), target_origin_ = target.middle();
+  const double extent = std::max(source.reach(), target.reach());
   // Squares of doubles neither vanish nor overflow in this range: the double distances are what they should be.
   is_blind_ = !(extent > 0x1p-400 && extent < 0x1p400);
   int exponent = 0;

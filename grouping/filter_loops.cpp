@@ -38,13 +38,12 @@ CORRAL_INLINE Floats counted(Mask mask, Floats count, Floats one) {
   return select(mask, count + one, count);
 }
 
+/// The sum of whole numbers; their order does not matter.
 template <class Floats>
 CORRAL_INLINE int total(Floats counts) {
-  float lanes[kFloatLanes];
-  counts.store(lanes);
-  float sum = 0;
-  for (const float lane : lanes) sum += lane;
-  return static_cast<int>(sum);
+  float quarters[4];
+  counts.folded().folded().store(quarters);
+  return static_cast<int>((quarters[0] + quarters[1]) + (quarters[2] + quarters[3]));
 }
 
 template <class Floats>

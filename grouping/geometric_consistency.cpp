@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "grouping/compatibility.h"
@@ -22,11 +23,27 @@ class ConsistencyTest {
     return std::abs(distances.source - distances.target) < tolerance_;
   }
 
+  /// The rows that agree with a seed, which agrees with itself: d = 0.
   Indices star(int seed) const {
-    Indices rows;
-    for (int row = 0; row < matches_.size(); ++row)
-      if ((*this)(seed, row)) rows.push_back(row);  // the seed agrees with itself: d = 0
-    return rows;
+    std::vector<std::uint8_t> agrees(static_cast<std::size_t>(matches_.size()));
+    vectorized([&](auto kind) {
+      using Lanes = typename decltype(kind)::Lanes;
+      const auto distance = [&](const Points& points, int row) {
+        const auto apart = [&](int axis) {
+          return Lanes::fill(points(seed, axis)) - Lanes::load(points.col(axis).data() + row);
+        };
+        const Lanes x = apart(0), y = apart(1), z = apart(2);
+        return square_root(x * x + y * y + z * z);
+      };
+      const Lanes yes = Lanes::fill(1), no = Lanes::fill(0), limit = Lanes::fill(tolerance_);
+      for (int row = 0; row + kLanes <= matches_.size(); row += kLanes)
+        select(magnitude(distance(matches_.source_points, row) - distance(matches_.target_points, row)) < limit, yes,
+               no)
+            .store(&agrees[static_cast<std::size_t>(row)]);
+    });
+    for (int row = matches_.size() / kLanes * kLanes; row < matches_.size(); ++row)
+      agrees[static_cast<std::size_t>(row)] = (*this)(seed, row);
+    return marked_rows(agrees);
   }
 
  private:

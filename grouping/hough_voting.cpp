@@ -5,17 +5,24 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+
+#include "kernel/vectorized.h"
 
 namespace corral {
 namespace {
 
 constexpr double kCubePr = 5;
 
-struct Vote {
-  int row;
-  Eigen::Vector3d position;
+/// Votes by column. The columns are padded with copies of the first vote, so that lanes find nothing else in them.
+struct Votes {
+  Indices rows;
+  AlignedColumn at[3];
+
+  std::size_t size() const { return rows.size(); }
+  Eigen::Array3d position(std::size_t i) const { return {at[0][i], at[1][i], at[2][i]}; }
 };
 
 /// Three whole numbers held as doubles: votes may lie anywhere a double can.
@@ -47,18 +54,14 @@ class Accumulator {
   void add(const Key& cell, double weight) {
     std::size_t at = static_cast<std::size_t>(hash(cell) >> (64 - bits_));
     while (slots_[at].weight > 0 && slots_[at].cell != cell) at = (at + 1) & (slots_.size() - 1);
-    slots_[at].cell = cell;
-    slots_[at].weight += weight;
+    Slot& slot = slots_[at];
+    slot.cell = cell;
+    slot.weight += weight;
+    if (slot.weight > fullest_.weight || (slot.weight == fullest_.weight && cell < fullest_.cell)) fullest_ = slot;
   }
 
   /// The cell with the largest sum; the first in order among equals.
-  Key fullest() const {
-    const Slot* best = &slots_.front();
-    for (const Slot& slot : slots_)
-      if (slot.weight > best->weight || (slot.weight == best->weight && slot.weight > 0 && slot.cell < best->cell))
-        best = &slot;
-    return best->cell;
-  }
+  const Key& fullest() const { return fullest_.cell; }
 
  private:
   struct Slot {
@@ -68,18 +71,26 @@ class Accumulator {
 
   int bits_ = 1;
   std::vector<Slot> slots_;
+  Slot fullest_{Key{}, 0};  ///< sums only grow: the one that comes to lead is seen when it does
 };
 
-std::vector<Vote> cast_votes(const CorrespondenceSet& matches) {
+Votes cast_votes(const CorrespondenceSet& matches) {
   const Eigen::Vector3d centroid = matches.source_centroid_or_mean();
-  std::vector<Vote> votes;
-  votes.reserve(static_cast<std::size_t>(matches.size()));
+  Votes votes;
+  votes.rows.reserve(static_cast<std::size_t>(matches.size()));
+  for (AlignedColumn& column : votes.at) column.resize(static_cast<std::size_t>(padded(matches.size())));
   for (int row = 0; row < matches.size(); ++row) {
     const LocalReferenceFrame& source = matches.source_frames[static_cast<std::size_t>(row)];
     const LocalReferenceFrame& target = matches.target_frames[static_cast<std::size_t>(row)];
     if (!is_valid_frame(source) || !is_valid_frame(target)) continue;
-    const Eigen::Vector3d local = source * (centroid - matches.source_points.row(row).transpose());   // v_i
-    votes.push_back({row, target.transpose() * local + matches.target_points.row(row).transpose()});  // g_i
+    const Eigen::Vector3d local = source * (centroid - matches.source_points.row(row).transpose());        // v_i
+    const Eigen::Vector3d vote = target.transpose() * local + matches.target_points.row(row).transpose();  // g_i
+    for (int axis = 0; axis < 3; ++axis) votes.at[axis][votes.size()] = vote(axis);
+    votes.rows.push_back(row);
+  }
+  for (AlignedColumn& column : votes.at) {
+    column.resize(votes.size());
+    column.resize(static_cast<std::size_t>(padded(static_cast<int>(votes.size()))), votes.size() > 0 ? column[0] : 0);
   }
   return votes;
 }
@@ -88,12 +99,21 @@ struct Box {
   Eigen::Array3d low, high;
 };
 
-Box bounding_box(const std::vector<Vote>& votes) {
-  Box box{votes.front().position, votes.front().position};
-  for (const Vote& vote : votes) {
-    box.low = box.low.min(vote.position.array());
-    box.high = box.high.max(vote.position.array());
-  }
+Box bounding_box(const Votes& votes) {
+  Box box;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes zero = Lanes::fill(0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const AlignedColumn& column = votes.at[axis];
+      Lanes low = Lanes::load(column.data()), high = low;
+      for (std::size_t i = 0; i < column.size(); i += kLanes) {
+        const Lanes place = Lanes::load(column.data() + i);
+        low = smaller(low, place), high = larger(high, place);
+      }
+      box.low(axis) = smallest(low), box.high(axis) = -smallest(zero - high);
+    }
+  });
   return box;
 }
 
@@ -103,46 +123,55 @@ double rounding_extent(const Box& box, double resolution) {
   return std::max(1e-6 * resolution, 64 * std::numeric_limits<double>::epsilon() * largest);
 }
 
-/// Each vote counts in one cell of the box; the fullest and its 6 face neighbours win.
-Indices select_in_box(const std::vector<Vote>& votes, int bins, double resolution) {
-  const Box box = bounding_box(votes);
-  const Eigen::Array3d low = box.low, extent = box.high - box.low, width = extent / bins;
+/// The place of each vote among the cells of one axis.
+using Places = std::vector<std::int32_t>;
+
+std::array<Places, 3> places_in_box(const Votes& votes, const Box& box, int bins, double resolution) {
   const double indivisible = rounding_extent(box, resolution);
-  const auto count = static_cast<std::uint64_t>(bins);
-  Accumulator<std::uint64_t> accumulator(votes.size());
-  std::vector<std::uint64_t> cells;  // (x bins + y) bins + z: they compare as x, then y, then z do
-  cells.reserve(votes.size());
-  for (const Vote& vote : votes) {
-    std::uint64_t cell = 0;
+  std::array<Places, 3> places;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes last = Lanes::fill(bins - 1);
     for (int axis = 0; axis < 3; ++axis) {
-      const double place = extent(axis) > indivisible ? (vote.position(axis) - low(axis)) / width(axis) : 0;
-      cell = cell * count + std::min(static_cast<std::uint64_t>(place), count - 1);
+      const AlignedColumn& column = votes.at[axis];
+      Places& place = places[static_cast<std::size_t>(axis)];
+      place.assign(column.size(), 0);
+      const double extent = box.high(axis) - box.low(axis);
+      if (!(extent > indivisible)) continue;
+      const Lanes low = Lanes::fill(box.low(axis)), width = Lanes::fill(extent / bins);
+      for (std::size_t i = 0; i < column.size(); i += kLanes)
+        smaller((Lanes::load(column.data() + i) - low) / width, last).store(place.data() + i);
     }
-    accumulator.add(cell, 1);
-    cells.push_back(cell);
-  }
+  });
+  return places;
+}
+
+/// Each vote counts in one cell of the box; the fullest and its 6 face neighbours win.
+Indices select_in_box(const Votes& votes, int bins, double resolution) {
+  const auto [x, y, z] = places_in_box(votes, bounding_box(votes), bins, resolution);
+  const auto count = static_cast<std::uint64_t>(bins);
+  Accumulator<std::uint64_t> accumulator(std::min<std::size_t>(votes.size(), count * count * count));
+  for (std::size_t i = 0; i < votes.size(); ++i)  // they compare as x, then y, then z do
+    accumulator.add((static_cast<std::uint64_t>(x[i]) * count + static_cast<std::uint64_t>(y[i])) * count +
+                        static_cast<std::uint64_t>(z[i]),
+                    1);
   const std::uint64_t peak = accumulator.fullest();
-  std::array<std::uint64_t, 7> winners;  // the peak itself where there is no neighbour
-  winners.fill(peak);
-  std::uint64_t step = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis, step *= count) {
-    const std::uint64_t place = peak / step % count;
-    if (place > 0) winners[2 * axis] = peak - step;
-    if (place + 1 < count) winners[2 * axis + 1] = peak + step;
-  }
-  Indices rows;
+  const auto peak_x = static_cast<int>(peak / count / count), peak_y = static_cast<int>(peak / count % count),
+             peak_z = static_cast<int>(peak % count);
+  Indices rows(votes.size());
+  std::size_t winners = 0;
   for (std::size_t i = 0; i < votes.size(); ++i) {
-    bool wins = false;
-    for (const std::uint64_t winner : winners) wins |= cells[i] == winner;
-    if (wins) rows.push_back(votes[i].row);
+    rows[winners] = votes.rows[i];
+    winners += std::abs(x[i] - peak_x) + std::abs(y[i] - peak_y) + std::abs(z[i] - peak_z) <= 1;
   }
+  rows.resize(winners);
   return rows;
 }
 
 /// The cell and the weight of each of the 8 cubes that share a vote.
 template <class Visit>
-void visit_shares(const Vote& vote, const Eigen::Array3d& low, double side, Visit visit) {
-  const Eigen::Array3d scaled = (vote.position.array() - low) / side - 0.5;  // whole numbers at the centres of cells
+void visit_shares(const Eigen::Array3d& vote, const Eigen::Array3d& low, double side, Visit visit) {
+  const Eigen::Array3d scaled = (vote - low) / side - 0.5;  // whole numbers at the centres of cells
   const Eigen::Array3d base = scaled.floor();
   const Eigen::Array3d part = scaled - base;
   for (int corner = 0; corner < 8; ++corner) {
@@ -154,17 +183,18 @@ void visit_shares(const Vote& vote, const Eigen::Array3d& low, double side, Visi
 }
 
 /// Each vote is shared among 8 cubes; those with a share in the fullest win.
-Indices select_in_cubes(const std::vector<Vote>& votes, double side) {
+Indices select_in_cubes(const Votes& votes, double side) {
   const Eigen::Array3d low = bounding_box(votes).low;
   Accumulator<Cell> accumulator(8 * votes.size());
-  for (const Vote& vote : votes)
-    visit_shares(vote, low, side, [&](const Cell& cell, double weight) { accumulator.add(cell, weight); });
+  for (std::size_t i = 0; i < votes.size(); ++i)
+    visit_shares(votes.position(i), low, side, [&](const Cell& cell, double weight) { accumulator.add(cell, weight); });
   const Cell peak = accumulator.fullest();
   Indices rows;
-  for (const Vote& vote : votes) {
+  for (std::size_t i = 0; i < votes.size(); ++i) {
     bool has_share = false;
-    visit_shares(vote, low, side, [&](const Cell& cell, double) { has_share = has_share || cell == peak; });
-    if (has_share) rows.push_back(vote.row);
+    visit_shares(votes.position(i), low, side,
+                 [&](const Cell& cell, double) { has_share = has_share || cell == peak; });
+    if (has_share) rows.push_back(votes.rows[i]);
   }
   return rows;
 }
@@ -174,9 +204,9 @@ Indices select_in_cubes(const std::vector<Vote>& votes, double side) {
 GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options) {
   validate_options(options, "hough");
   require_columns(matches, "hough", {Column::SourceFrames, Column::TargetFrames});
-  const std::vector<Vote> votes = cast_votes(matches);
+  const Votes votes = cast_votes(matches);
   GroupingResult result;
-  if (votes.empty()) return result;
+  if (votes.size() == 0) return result;
   result.selected = options.cells == HoughCells::Box ? select_in_box(votes, options.bins, matches.resolution)
                                                      : select_in_cubes(votes, kCubePr * matches.resolution);
   return result;
@@ -184,8 +214,8 @@ GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const Hou
 
 double working_memory(int matches, const HoughVotingOptions& options) {
   // The votes, their cells and the selection as it grows; a table of less than 4 slots for each share of a vote.
-  const double shares = options.cells == HoughCells::Box ? 1 : 8;
-  return matches * (32.0 + 24.0 + 12.0 + 4 * 32.0 * shares) + 256;
+  const double table = options.cells == HoughCells::Box ? 4 * 16.0 : 8 * 4 * 32.0;
+  return matches * (28.0 + 12.0 + 12.0 + table) + 1024;
 }
 
 }  // namespace corral

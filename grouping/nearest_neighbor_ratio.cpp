@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/nearest_neighbor_ratio.h"
 
+#include <algorithm>
+
 #include "grouping/compatibility.h"
 
 namespace corral {
@@ -10,14 +12,17 @@ GroupingResult group_by_nearest_neighbor_ratio(const CorrespondenceSet& matches,
   validate_options(options, "nnsr");
   require_columns(matches, "nnsr", {Column::FeatureDistance, Column::SecondFeatureDistance});
   GroupingResult result;
-  result.scores = ratio_scores(matches);
-  for (int row = 0; row < matches.size(); ++row) {
-    const double d1 = matches.feature_distance(row), d2 = matches.second_feature_distance(row);
-    const bool kept = options.ratio == RatioRule::Lowe
-                          ? passes_ratio_test(d1, d2, options.threshold)
-                          : d2 > 0 && result.scores[static_cast<std::size_t>(row)] >= options.threshold;
-    if (kept) result.selected.push_back(row);
-  }
+  const std::vector<double> ratios = feature_ratios(matches);
+  result.scores = ratio_scores(ratios);
+  std::vector<std::uint8_t> kept(ratios.size());
+  if (options.ratio == RatioRule::Lowe)
+    std::transform(ratios.begin(), ratios.end(), kept.begin(),
+                   [limit = options.threshold](double ratio) { return ratio <= limit; });
+  else
+    std::transform(
+        ratios.begin(), ratios.end(), result.scores.begin(), kept.begin(),
+        [limit = options.threshold](double ratio, double score) { return ratio == ratio && score >= limit; });
+  result.selected = marked_rows(kept);
   return result;
 }
 

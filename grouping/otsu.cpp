@@ -5,39 +5,56 @@
 #include <cmath>
 #include <numeric>
 
+#include "grouping/compatibility.h"
 #include "kernel/error.h"
+#include "kernel/vectorized.h"
 
 namespace corral {
 namespace {
 
 constexpr double kTie = 1e-12;  // variances that differ by less differ by rounding
 
-/// The cut of `count` ordered classes that maximises n1 n2 (m1 - m2)^2: the last class of the lower part, or -1 if no
-/// cut has two non-empty sides. weight(i) and value(i) describe class i.
-template <class Weight, class Value>
-int best_cut(int count, Weight weight, Value value) {
-  double total_weight = 0, total = 0;
-  for (int i = 0; i < count; ++i) total_weight += weight(i), total += weight(i) * value(i);
+/// The cut of ordered classes that maximises n1 n2 (m1 - m2)^2: the last class of the lower part, or -1 if no cut has two
+/// non-empty sides. Classes have a weight and a value each.
+int best_cut(const std::vector<double>& weights, const std::vector<double>& values) {
+  const std::size_t count = weights.size();
+  std::vector<double> lower_weights(count), lowers(count);
+  double weight = 0, sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    lower_weights[i] = weight += weights[i];
+    lowers[i] = sum += weights[i] * values[i];
+  }
+  const double total_weight = weight, total = sum;
+  const auto variance = [=](auto lower_weight, auto lower, auto all_weight, auto all) {
+    const auto upper_weight = all_weight - lower_weight;
+    const auto gap = lower / lower_weight - (all - lower) / upper_weight;
+    return lower_weight * upper_weight * gap * gap;
+  };
+  std::vector<double> variances(count);
+  const std::size_t whole = count - count % kLanes;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes all_weight = Lanes::fill(total_weight), all = Lanes::fill(total);
+    for (std::size_t i = 0; i < whole; i += kLanes)
+      variance(Lanes::load(&lower_weights[i]), Lanes::load(&lowers[i]), all_weight, all).store(&variances[i]);
+  });
+  for (std::size_t i = whole; i < count; ++i) variances[i] = variance(lower_weights[i], lowers[i], total_weight, total);
+
   int best = -1;
-  double best_variance = 0, lower_weight = 0, lower = 0;
-  for (int i = 0; i + 1 < count; ++i) {
-    lower_weight += weight(i);
-    lower += weight(i) * value(i);
-    const double upper_weight = total_weight - lower_weight;
-    if (!(weight(i) > 0) || !(upper_weight > 0)) continue;  // an empty class ends no part: the cut below it is the same
-    const double gap = lower / lower_weight - (total - lower) / upper_weight;
-    const double variance = lower_weight * upper_weight * gap * gap;
-    if (variance > best_variance * (1 + kTie)) best = i, best_variance = variance;
+  double to_beat = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    // An empty class ends no part: the cut below it is the same.
+    if (!(variances[i] > to_beat) || !(weights[i] > 0) || !(total_weight - lower_weights[i] > 0)) continue;
+    best = static_cast<int>(i), to_beat = variances[i] * (1 + kTie);
   }
   return best;
 }
 
 template <class Accept>
 Indices rows_where(const std::vector<double>& scores, Accept accept) {
-  Indices rows;
-  for (std::size_t row = 0; row < scores.size(); ++row)
-    if (accept(scores[row])) rows.push_back(static_cast<int>(row));
-  return rows;
+  std::vector<std::uint8_t> accepted(scores.size());
+  std::transform(scores.begin(), scores.end(), accepted.begin(), accept);
+  return marked_rows(accepted);
 }
 
 Indices all_rows(const std::vector<double>& scores) {
@@ -47,20 +64,24 @@ Indices all_rows(const std::vector<double>& scores) {
 Indices select_exact(const std::vector<double>& scores) {
   std::vector<double> sorted = scores;
   std::sort(sorted.begin(), sorted.end());
-  std::vector<double> values, weights;  // equal scores are one class: a cut between them is none
-  for (const double score : sorted) {
-    if (values.empty() || values.back() < score) values.push_back(score), weights.push_back(0);
-    weights.back() += 1;
+  // Equal scores are one class: a cut between them is none. Measured from the smallest score: the variance does not
+  // change, and far-away scores keep their digits.
+  std::vector<double> values(sorted.size()), weights(sorted.size());
+  std::size_t classes = 0, first = 0;
+  for (std::size_t next = 1; next <= sorted.size(); ++next) {
+    if (next < sorted.size() && !(sorted[first] < sorted[next])) continue;
+    values[classes] = sorted[first] - sorted.front();
+    weights[classes] = static_cast<double>(next - first);
+    sorted[classes++] = sorted[first];
+    first = next;
   }
-  const int cut = best_cut(
-      static_cast<int>(values.size()), [&](int i) { return weights[static_cast<std::size_t>(i)]; },
-      // measured from the smallest score: the variance does not change and far-away scores keep their digits
-      [&](int i) { return values[static_cast<std::size_t>(i)] - values.front(); });
+  values.resize(classes), weights.resize(classes);
+  const int cut = best_cut(weights, values);
   if (cut < 0) return all_rows(scores);
-  const double below = values[static_cast<std::size_t>(cut)], next = values[static_cast<std::size_t>(cut) + 1];
+  const double below = sorted[static_cast<std::size_t>(cut)], next = sorted[static_cast<std::size_t>(cut) + 1];
   const double midpoint = below + (next - below) / 2;
   const double threshold = midpoint > below ? midpoint : next;  // neighbouring doubles have no midpoint
-  return rows_where(scores, [&](double score) { return score >= threshold; });
+  return rows_where(scores, [=](double score) { return score >= threshold; });
 }
 
 /// The bin of a score among `bins` equal ones over [low, high]; what lies outside belongs to the first or the last.
@@ -72,8 +93,9 @@ int bin_of(double score, double low, double high, int bins) {
 int histogram_cut(const std::vector<double>& scores, double low, double high, int bins) {
   std::vector<double> counts(static_cast<std::size_t>(bins), 0);
   for (const double score : scores) counts[static_cast<std::size_t>(bin_of(score, low, high, bins))] += 1;
-  return best_cut(
-      bins, [&](int i) { return counts[static_cast<std::size_t>(i)]; }, [](int i) { return static_cast<double>(i); });
+  std::vector<double> numbers(counts.size());
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  return best_cut(counts, numbers);
 }
 
 Indices select_bins100(const std::vector<double>& scores) {
@@ -81,7 +103,7 @@ Indices select_bins100(const std::vector<double>& scores) {
   const double low = *extremes.first, high = *extremes.second;
   if (!(high > low)) return all_rows(scores);
   const int cut = histogram_cut(scores, low, high, 100);
-  return rows_where(scores, [&](double score) { return bin_of(score, low, high, 100) >= cut; });
+  return rows_where(scores, [=](double score) { return bin_of(score, low, high, 100) >= cut; });
 }
 
 Indices select_covis(const std::vector<double>& scores) {
@@ -89,7 +111,7 @@ Indices select_covis(const std::vector<double>& scores) {
   const int cut = histogram_cut(scores, 0, 1, bins);
   if (cut < 0) return all_rows(scores);
   const double threshold = cut / (bins - 1.0);
-  return rows_where(scores, [&](double score) { return score > threshold; });
+  return rows_where(scores, [=](double score) { return score > threshold; });
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
 #include <utility>
 
@@ -17,6 +16,8 @@ class GraphMatrix {
   virtual int size() const = 0;
   /// to = M from. Both have the size of the matrix.
   virtual void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const = 0;
+  /// Rounds some numbers to as many digits as the fastest product has; then to = M numbers.
+  virtual void round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const = 0;
   /// The number of positive entries of each row, and the sum of the squares of all entries.
   virtual Eigen::VectorXd degrees() const = 0;
   virtual double sum_of_squares() const = 0;
@@ -34,6 +35,7 @@ class DenseGraph : public GraphMatrix {
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override {
     to.noalias() = matrix_.selfadjointView<Eigen::Lower>() * from;
   }
+  void round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const override { multiply(numbers, to); }
   Eigen::VectorXd degrees() const override { return (matrix_.array() > 0).cast<double>().colwise().sum().transpose(); }
   double sum_of_squares() const override { return matrix_.squaredNorm(); }
   void get_column(int node, Eigen::VectorXd& column) const override { column = matrix_.col(node); }
@@ -55,21 +57,23 @@ class DenseGraph : public GraphMatrix {
 /// or until rounding lets it fall no further. A matrix without a positive entry: zero.
 Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix);
 
-/// Whether a vector that is this near to the answer (2-norm) will do.
-using WillDo = std::function<bool(const Eigen::VectorXd& approximation, double error)>;
-
-/// The same for some nodes of a connected graph, from a good start, and only as exactly as it is needed.
-struct ConnectedProblem {
+/// Some nodes of a graph, whose edges weigh at most 1.
+struct Subgraph {
   const GraphMatrix& matrix;
-  const Eigen::VectorXd& takes_part;  ///< 1 for the nodes that do, which are connected; 0 for the others
-  const Eigen::VectorXd& start;       ///< zero where nobody takes part, not zero everywhere
-  double sum_of_squares;              ///< of the entries between the nodes that take part
+  const Eigen::VectorXd& takes_part;  ///< 1 for the nodes that do, 0 for the others
+  const Eigen::VectorXd& degrees;     ///< numbers of positive entries between nodes that take part
+  double sum_of_squares;              ///< of these entries
 };
-/// The error that `will_do` is told follows from the residual and from a bound of all other eigenvalues: the squares of all
-/// eigenvalues add up to the squares of all entries. Where that bound is too weak, the answer is the converged one.
-Eigen::VectorXd principal_eigenvector(const ConnectedProblem& problem, const WillDo& will_do);
 
-/// Whether the nodes with a positive weight are connected among each other. The search begins where it is largest.
-bool is_connected(const GraphMatrix& matrix, const Eigen::VectorXd& weights);
+/// The node of the largest entry in the principal eigenvector of a subgraph, the first of those that are within `tie` of
+/// it; or kUncertain where a few rounded products do not prove which one that is. `entries` is an approximation of the
+/// eigenvector to start from, zero where nobody takes part; on return a better one.
+///
+/// The proof needs no convergence. The squares of all eigenvalues add up to the squares of all entries, which bounds those
+/// behind the largest; so the residual of a vector y tells its angle to the eigenvector x. With M y = cos l x + sin M u, u a
+/// unit vector, entries i and j of M y are in the order of those of x if they differ by more than sin |row_i - row_j|. Nodes
+/// with equal rows have equal entries.
+int leading_entry(const Subgraph& graph, double tie, Eigen::VectorXd& entries);
+constexpr int kUncertain = -1;
 
 }  // namespace corral

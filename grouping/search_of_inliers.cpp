@@ -190,7 +190,7 @@ GroupingResult group_by_search_of_inliers(const CorrespondenceSet& matches, cons
 
   Voting voting(matches, options);
   std::vector<Votes> local;
-  std::vector<double> rank = ratio_scores(matches);  // by which the global voters are chosen
+  std::vector<double> rank = ratio_scores(feature_ratios(matches));  // by which the global voters are chosen
   for (int row = 0; row < matches.size(); ++row) local.push_back(voting.local_votes(row));
   if (options.form == VotingForm::Covis)
     std::transform(local.begin(), local.end(), rank.begin(), [](const Votes& votes) { return votes.score(); });

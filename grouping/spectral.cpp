@@ -2,6 +2,7 @@
 #include "grouping/spectral.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "grouping/compatibility.h"
@@ -13,9 +14,6 @@ namespace {
 
 constexpr double kTie = 1e-9;
 constexpr int kNobody = -1;
-
-/// So few nodes that a lead of count^(-5/2) in the eigenvector is no tie.
-constexpr int kClearLead = 3900;
 
 /// r(i,j) where it reaches `similarity`, else 0; 1 on the diagonal.
 Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similarity) {
@@ -30,16 +28,6 @@ Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similar
   return matrix;
 }
 
-/// The largest entry is ahead of all others by more than errors and ties.
-bool one_leads(const Eigen::VectorXd& entries, double error) {
-  double first = 0, second = 0;
-  for (const double entry : entries) {
-    second = std::max(second, std::min(first, entry));
-    first = std::max(first, entry);
-  }
-  return first - second > 2 * error + kTie;
-}
-
 /// The matches that are neither accepted nor in conflict with an accepted one, as nodes of a graph. Now and then the graph
 /// is renumbered to hold no others.
 class Alive {
@@ -49,6 +37,7 @@ class Alive {
         is_binary_(is_binary),
         rows_(static_cast<std::size_t>(graph_->size())),
         takes_part_(Eigen::VectorXd::Ones(graph_->size())),
+        entries_(takes_part_),
         degrees_(graph_->degrees()),
         sum_of_squares_(graph_->sum_of_squares()),
         count_(graph_->size()) {
@@ -75,14 +64,10 @@ class Alive {
   int choose() {
     const int obvious = compatible_with_all();
     if (obvious != kNobody || count_ == 0) return obvious;
-    if (is_surely_connected() || is_connected(*graph_, degrees_.cwiseProduct(takes_part_))) {
-      // A start that is positive everywhere: it cannot be orthogonal to the answer.
-      const Eigen::VectorXd start = (entries_.array() + 1e-3 / count_).matrix().cwiseProduct(takes_part_);
-      entries_ = principal_eigenvector({*graph_, takes_part_, start, sum_of_squares_}, one_leads);
-    } else {
-      renumber();
-      start();
-    }
+    const int leader = leading_entry({*graph_, takes_part_, degrees_, sum_of_squares_}, kTie, entries_);
+    if (leader != kUncertain) return leader;
+    renumber();
+    start();
     return largest();
   }
 
@@ -91,7 +76,7 @@ class Alive {
     const int row = rows_[static_cast<std::size_t>(chosen)];
     graph_->get_column(chosen, column_);
     Indices leaving;
-    for (int node = 0; node < graph_->size(); ++node)
+    for (int node = 0; node < takes_part_.size(); ++node)
       if (takes_part_(node) > 0 && (node == chosen || !(column_(node) > 0))) leaving.push_back(node);
     for (const int node : leaving) remove(node);
     if (4 * count_ < 3 * graph_->size()) renumber();
@@ -101,21 +86,20 @@ class Alive {
  private:
   /// The first node that is compatible with all others. Where M has no entries but 0 and 1 it is the one that choose()
   /// looks for: x_f = S / l, with S the sum of all entries and l the eigenvalue. A node that misses somebody has
-  /// x_i = (S - what it misses) / l, and misses at least one x_k >= x_f / (l - 1), for k is compatible with f and with
-  /// itself. With x_f >= count^(-1/2) and l <= count the lead of f is at least count^(-5/2).
+  /// x_i = (S - what it misses) / l and misses at least one x_k. That k has x_k >= x_f / (l - 1), for it is compatible with f
+  /// and with itself; and x_k >= (S - (count - degree) x_f) / l, for nobody exceeds f. With x_f >= count^(-1/2) and l between
+  /// the mean degree and count, f leads by count^(-5/2) at least, or (mean degree - count + least degree) times that.
   int compatible_with_all() const {
-    if (!is_binary_ || count_ > kClearLead) return kNobody;
-    for (int node = 0; node < graph_->size(); ++node)
-      if (takes_part_(node) > 0 && degrees_(node) == count_) return node;
-    return kNobody;
-  }
-
-  /// Any two nodes that are not adjacent share a neighbour.
-  bool is_surely_connected() const {
-    double smallest = count_;
-    for (int node = 0; node < graph_->size(); ++node)
-      if (takes_part_(node) > 0) smallest = std::min(smallest, degrees_(node));
-    return 2 * smallest > count_;
+    if (!is_binary_) return kNobody;
+    double least = count_;
+    int first = kNobody;
+    for (int node = 0; node < takes_part_.size(); ++node) {
+      if (!(takes_part_(node) > 0)) continue;
+      least = std::min(least, degrees_(node));
+      if (first == kNobody && degrees_(node) == count_) first = node;
+    }
+    const double factor = std::max(1.0, sum_of_squares_ / count_ - count_ + least);
+    return factor * std::pow(count_, -2.5) > 2 * kTie ? first : kNobody;
   }
 
   void remove(int node) {
@@ -132,7 +116,7 @@ class Alive {
 
   void renumber() {
     Indices nodes;
-    for (int node = 0; node < graph_->size(); ++node)
+    for (int node = 0; node < takes_part_.size(); ++node)
       if (takes_part_(node) > 0) nodes.push_back(node);
     graph_ = graph_->restricted(nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i) rows_[i] = rows_[static_cast<std::size_t>(nodes[i])];
@@ -146,7 +130,7 @@ class Alive {
   bool is_binary_;              ///< no entries but 0 and 1
   Indices rows_;                ///< of the table, by node
   Eigen::VectorXd takes_part_;  ///< 1 or 0, by node
-  Eigen::VectorXd entries_;     ///< of the last eigenvector, by node; 0 for those that left since
+  Eigen::VectorXd entries_;     ///< of the last eigenvector or near it, by node; 0 for those that left since
   Eigen::VectorXd degrees_;     ///< number of compatible matches alive, with itself, by node
   double sum_of_squares_;       ///< of the matrix of those alive
   int count_;                   ///< of those alive
@@ -166,9 +150,9 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
     graph = std::make_unique<CompatibilityGraph>(matches, options.similarity);
   Alive alive(std::move(graph), !options.weighted);
   if (!alive.has_edges()) return result;  // nobody agrees with anybody else
-  alive.start();
-  for (int node = alive.largest(); node != kNobody; node = options.once ? alive.largest() : alive.choose())
-    result.selected.push_back(alive.accept(node));
+  if (options.once) alive.start();
+  const auto next = [&] { return options.once ? alive.largest() : alive.choose(); };
+  for (int node = next(); node != kNobody; node = next()) result.selected.push_back(alive.accept(node));
   std::sort(result.selected.begin(), result.selected.end());
   return result;
 }

@@ -11,10 +11,13 @@
 namespace corral {
 
 bool is_rotation(const Eigen::Matrix3d& matrix, double tolerance) {
-  const Eigen::Vector3d x = matrix.row(0), y = matrix.row(1), z = matrix.row(2);
+  const double *const a = matrix.data(), *const b = a + 3, *const c = a + 6;  // the columns
+  const auto dot = [&](int i, int j) { return a[i] * a[j] + b[i] * b[j] + c[i] * c[j]; };
   const auto is_near = [=](double number, double expected) { return std::abs(number - expected) <= tolerance; };
-  return is_near(x.dot(x), 1) && is_near(y.dot(y), 1) && is_near(z.dot(z), 1) && is_near(x.dot(y), 0) &&
-         is_near(x.dot(z), 0) && is_near(y.dot(z), 0) && x.cross(y).dot(z) > 0;
+  return is_near(dot(0, 0), 1) && is_near(dot(1, 1), 1) && is_near(dot(2, 2), 1) && is_near(dot(0, 1), 0) &&
+         is_near(dot(0, 2), 0) && is_near(dot(1, 2), 0) &&
+         (b[0] * c[1] - c[0] * b[1]) * a[2] + (c[0] * a[1] - a[0] * c[1]) * b[2] + (a[0] * b[1] - b[0] * a[1]) * c[2] >
+             0;
 }
 
 std::optional<RigidTransform> fit_rigid_transform(const Points& source, const Points& target) {

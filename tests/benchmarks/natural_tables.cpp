@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tests/benchmarks/natural_tables.h"
 
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <utility>
+
 #include "apps/match_pair.h"
 #include "kernel/evaluation.h"
+#include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
 
 namespace corral::benchmarks {
@@ -81,6 +87,18 @@ std::vector<NaturalTable> natural_tables(Workload& load, const std::vector<int>&
   add(load.name(), load.mesh());
   add(load.name() + ":part", part_of(load.mesh(), kSeenShare));
   return tables;
+}
+
+std::function<void()> in_turn(const CorrespondenceSet& matches, std::function<void(const CorrespondenceSet&)> use) {
+  const auto tables = std::make_shared<std::vector<CorrespondenceSet>>();
+  Indices order(static_cast<std::size_t>(matches.size()));
+  std::iota(order.begin(), order.end(), 0);
+  RandomStream random(kSeed);
+  for (int table = std::clamp(16000 / std::max(matches.size(), 1), 1, 64); table > 0; --table) {
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    tables->push_back(select_rows(matches, order));
+  }
+  return [tables, use, next = std::size_t{0}]() mutable { use((*tables)[next++ % tables->size()]); };
 }
 
 }  // namespace corral::benchmarks

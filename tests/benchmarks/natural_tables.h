@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,5 +22,9 @@ struct NaturalTable {
 /// Tables of both scenes and of these sizes (ascending), as far as the mesh has vertices for them. Each holds rows evenly spread over all
 /// matches of the coarsest keypoints that give enough: Harris from 3 pr down to 1.5 pr, then uniform ones.
 std::vector<NaturalTable> natural_tables(Workload& load, const std::vector<int>& sizes);
+
+/// Uses the same rows in another order with each call, some 16,000 rows in all: of one small table that is seen again and
+/// again a processor learns by heart which way each comparison of a sort goes.
+std::function<void()> in_turn(const CorrespondenceSet& matches, std::function<void(const CorrespondenceSet&)> use);
 
 }  // namespace corral::benchmarks

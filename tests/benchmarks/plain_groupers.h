@@ -8,8 +8,7 @@
 /// What definitions of groupers cost when they are written down as plain loops in double.
 namespace corral::benchmarks::plain {
 
-/// SS less its threshold and selection: one std::sort of the scores. Up to some 2,000 of them a processor learns by heart
-/// which way each comparison of a repeated sort goes.
+/// SS less its threshold and selection: one std::sort of the scores.
 std::vector<double> sorted_scores(const CorrespondenceSet& matches);
 
 /// NNSR less its selection and checks: one pass over two columns that writes a third, as fast as memory allows.
