@@ -43,18 +43,16 @@ struct Votes {
   }
 };
 
-/// The angle whose tangent is b / a (a, b >= 0) from the middle of its half of the quadrant, -0.5 .. 0.5 in units of 45
-/// degrees. NaN where both are 0.
+constexpr double kSlope = 0.41421356237309503;  // tan(22.5 degrees) = 1 / tan(67.5 degrees)
+
+/// The angle of a tangent within kSlope, in units of 45 degrees: directions are measured from 22.5 degrees, where
+/// tan(angle - 22.5 degrees) = (y - x kSlope) / (x + y kSlope), so that there are no cases.
 template <class Lanes>
-CORRAL_INLINE Lanes from_octant_middle(const Lanes& a, const Lanes& b) {
-  // tan(angle - middle) = (b - a tan(middle)) / (a + b tan(middle)) is within tan(22.5 degrees), where eight terms of a
-  // polynomial, interpolated at the Chebyshev nodes of the square, are within 1e-12 of the angle.
+CORRAL_INLINE Lanes octants(const Lanes& ratio) {
+  // Eight terms of a polynomial, interpolated at the Chebyshev nodes of the square, are within 1e-12 of the angle.
   constexpr double c[] = {1.2732395447342011,  -0.42441318086014196, 0.25464782050210991,  -0.18188719071878606,
                           0.14137360416332489, -0.11449673936626147, 0.088798241426864804, -0.047943967449120126};
   const auto fill = [](double number) { return Lanes::fill(number); };
-  const Lanes slope = fill(0.41421356237309503);  // tan(22.5 degrees) = 1 / tan(67.5 degrees)
-  const auto steep = a < b;
-  const Lanes ratio = select(steep, b * slope - a, b - a * slope) / select(steep, a * slope + b, a + b * slope);
   const Lanes square = ratio * ratio, fourth = square * square;
   const Lanes low = (fill(c[0]) + fill(c[1]) * square) + (fill(c[2]) + fill(c[3]) * square) * fourth;
   const Lanes high = (fill(c[4]) + fill(c[5]) * square) + (fill(c[6]) + fill(c[7]) * square) * fourth;
@@ -102,9 +100,10 @@ class Voter {
 
     const Lanes dx = Lanes::load(&support_.x[i]), dy = Lanes::load(&support_.y[i]), dz = Lanes::load(&support_.z[i]);
     const Lanes x = along(0, dx, dy, dz), y = along(1, dx, dy, dz), z = along(2, dx, dy, dz);
-    const Lanes flat = square_root(x * x + y * y), height = magnitude(z);
-    share[Votes::kElevation] =
-        magnitude(fill(0.25) - half * from_octant_middle(larger(flat, height), smaller(flat, height)));
+    const Lanes flat = square_root(x * x + y * y), height = magnitude(z), slope = fill(kSlope);
+    const Lanes less = smaller(flat, height), more = larger(flat, height);
+    const Lanes aslant = octants((less - more * slope) / (more + less * slope));  // 0.5 half way between plane and axis
+    share[Votes::kElevation] = fill(0.25) - half * aslant;  // not negative: the polynomial ends below 0.5
     given[Votes::kElevation] = select(height < flat, share[Votes::kElevation], zero);
 
     // Azimuth: sectors of 45 degrees from -180, each with its upper border. Half a turn brings the lower four of them
@@ -114,7 +113,9 @@ class Voter {
     const Lanes turned = select(is_upper, x, zero - x), ax = magnitude(x), ay = magnitude(y);
     const auto is_last = turned < zero;
     const Lanes a = select(is_last, ay, ax), b = select(is_last, ax, ay);
-    const Lanes aside = from_octant_middle(a, b);
+    const auto is_steep = a < b;  // measured from 67.5 degrees
+    const Lanes aside = octants(select(is_steep, b * slope - a, b - a * slope) /
+                                select(is_steep, a * slope + b, a + b * slope));  // from the middle of the sector
     share[Votes::kAzimuth] = select(on_axis, one, magnitude(aside));
     given[Votes::kAzimuth] = select(on_axis, zero, magnitude(aside));
 
@@ -123,7 +124,7 @@ class Voter {
     own = select(zero < z, own + fill(kAbove), own);
     own = select(is_upper, own + fill(4 * kSector), own);
     own = select(is_last, own + fill(2 * kSector), own);
-    own = select(a < b, own + fill(kSector), own);
+    own = select(is_steep, own + fill(kSector), own);
     own.store(&votes.own[at]);
     select(delta < zero, own - one, own + select(cosine == fill(9), after_nine_, one)).store(&votes.beside_cosine[at]);
     select(aside < zero, own - fill(kSector), own + fill(kSector)).store(&votes.beside_azimuth[at]);
