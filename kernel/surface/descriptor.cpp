@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "kernel/error.h"
@@ -63,7 +64,8 @@ class SupportFinder {
         nx_(grid_.by_slot(normals.col(0))),
         ny_(grid_.by_slot(normals.col(1))),
         nz_(grid_.by_slot(normals.col(2))),
-        squared_(rim ? radius * radius : std::nextafter(radius * radius, 0)),
+        squared_(  // finite: the padding of the grid is not near
+            std::min(rim ? radius * radius : std::nextafter(radius * radius, 0), std::numeric_limits<double>::max())),
         slots_(static_cast<std::size_t>(grid_.size())) {
     for (int slot = 0; slot < grid_.size(); ++slot) slots_[static_cast<std::size_t>(grid_.row(slot))] = slot;
   }
@@ -111,28 +113,27 @@ class SupportFinder {
   }
 
   void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
-    const double x = grid_.x()[slot], y = grid_.y()[slot], z = grid_.z()[slot];
-    support.count = 0;
     vectorized([&](auto kind) {
       using Lanes = typename decltype(kind)::Lanes;
-      const SlotRange* const first = ranges.data();
-      double *const xs = support.x.data(), *const ys = support.y.data(), *const zs = support.z.data(),
-                    *const nxs = support.nx.data(), *const nys = support.ny.data(), *const nzs = support.nz.data();
-      const double *const nx = nx_.data(), *const ny = ny_.data(), *const nz = nz_.data();
+      const Lanes x = Lanes::fill(grid_.x()[slot]), y = Lanes::fill(grid_.y()[slot]), z = Lanes::fill(grid_.z()[slot]),
+                  squared = Lanes::fill(squared_), zero = Lanes::fill(0);
+      const double* const from[] = {grid_.x().data(), grid_.y().data(), grid_.z().data(),
+                                    nx_.data(),       ny_.data(),       nz_.data()};
+      double* const to[] = {support.x.data(),  support.y.data(),  support.z.data(),
+                            support.nx.data(), support.ny.data(), support.nz.data()};
       std::size_t count = 0;
-      visit_within<Lanes>(grid_, first, first + ranges.size(), x, y, z, squared_,
-                          [&](auto within, Lanes dx, Lanes dy, Lanes dz, std::size_t at) {
-                            const auto elsewhere = Lanes::fill(0) < dx * dx + dy * dy + dz * dz;
-                            const unsigned chosen = bits(within) & bits(elsewhere);
-                            if (chosen == 0) return;
-                            dx.pack(chosen, xs + count);
-                            dy.pack(chosen, ys + count);
-                            dz.pack(chosen, zs + count);
-                            Lanes::load(nx + at).pack(chosen, nxs + count);
-                            Lanes::load(ny + at).pack(chosen, nys + count);
-                            Lanes::load(nz + at).pack(chosen, nzs + count);
-                            count += static_cast<std::size_t>(__builtin_popcount(chosen));
-                          });
+      int at = 0;
+      // By whole cache lines: what else stands in them lies beyond the radius, or in the next range, which goes on behind.
+      for (const SlotRange& range : ranges)
+        for (at = std::max(at, range.begin / kLanes * kLanes); at < range.end; at += kLanes) {
+          const Lanes dx = Lanes::load(from[0] + at) - x, dy = Lanes::load(from[1] + at) - y,
+                      dz = Lanes::load(from[2] + at) - z, away = dx * dx + dy * dy + dz * dz;
+          const unsigned chosen = bits(away <= squared) & bits(zero < away);
+          if (chosen == 0) continue;
+          dx.pack(chosen, to[0] + count), dy.pack(chosen, to[1] + count), dz.pack(chosen, to[2] + count);
+          for (int i = 3; i < 6; ++i) Lanes::load(from[i] + at).pack(chosen, to[i] + count);
+          count += static_cast<std::size_t>(__builtin_popcount(chosen));
+        }
       support.count = static_cast<int>(count);
     });
   }

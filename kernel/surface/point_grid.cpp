@@ -202,7 +202,7 @@ void PointGrid::sort_into_cells(const Points& points) {
   }
   begins_.push_back(static_cast<int>(items.size()));
   rows_.resize(items.size());
-  x_.resize(static_cast<std::size_t>(padded(size()) + kLanes));
+  x_.resize(static_cast<std::size_t>(padded(size()) + kLanes), std::numeric_limits<double>::infinity());
   for (std::size_t slot = 0; slot < items.size(); ++slot) rows_[slot] = items[slot].row, x_[slot] = items[slot].x;
   y_ = by_slot(points.col(1));
   z_ = by_slot(points.col(2));
