@@ -118,13 +118,6 @@ void radix_sort(std::vector<Item>& items, const Key& key) {
   }
 }
 
-/// By insertion: the fastest for a few that are nearly in order.
-template <class Iterator, class Less>
-void sort_few(Iterator first, Iterator last, const Less& is_less) {
-  for (Iterator next = first; next != last; ++next)
-    for (Iterator at = next; at != first && is_less(*at, *(at - 1)); --at) std::swap(*at, *(at - 1));
-}
-
 /// Slices leave little to the sort within a cell: as many as cost no further digit of the keys.
 int slice_bits_for(const std::vector<std::int64_t>& keys) {
   std::int64_t all = 0;
@@ -133,6 +126,13 @@ int slice_bits_for(const std::vector<std::int64_t>& keys) {
   while (bits < 63 && all >> (bits - kSliceBits) != 0) ++bits;
   const int free = std::min(63, (bits + kDigitBits - 1) / kDigitBits * kDigitBits) - bits;
   return std::min(kSliceBits + free, kMostSliceBits);
+}
+
+/// By insertion: the fastest for a few that are nearly in order.
+template <class Iterator, class Less>
+void sort_few(Iterator first, Iterator last, const Less& is_less) {
+  for (Iterator next = first; next != last; ++next)
+    for (Iterator at = next; at != first && is_less(*at, *(at - 1)); --at) std::swap(*at, *(at - 1));
 }
 
 std::size_t count_cells(std::vector<std::int64_t> keys) {
