@@ -4,7 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "kernel/error.h"
@@ -15,24 +17,8 @@ namespace {
 
 constexpr int kSmallestFrame = 5;
 
-/// Turns an axis to the side where most of the support lies.
-Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Support& support) {
-  int ahead = 0;
-  const auto along = [&](std::size_t i) {
-    return support.x[i] * axis.x() + support.y[i] * axis.y() + support.z[i] * axis.z();
-  };
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes x = Lanes::fill(axis.x()), y = Lanes::fill(axis.y()), z = Lanes::fill(axis.z()), zero = Lanes::fill(0),
-                one = Lanes::fill(1);
-    Lanes count = zero;  // the padding lies at the point: ahead
-    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
-      const Lanes dot =
-          Lanes::load(&support.x[i]) * x + Lanes::load(&support.y[i]) * y + Lanes::load(&support.z[i]) * z;
-      count = count + select(zero <= dot, one, zero);
-    }
-    ahead = static_cast<int>(sum(count)) - (padded(support.count) - support.count);
-  });
+/// Turns an axis, of which so many of the support lie ahead, to the side where most of it lies.
+Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, int ahead, const Support& support) {
   if (2 * ahead != support.count) return 2 * ahead < support.count ? Eigen::Vector3d(-axis) : axis;
 
   std::vector<std::size_t> order(static_cast<std::size_t>(support.count));
@@ -41,8 +27,33 @@ Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, const Support& sup
                    [&](std::size_t a, std::size_t b) { return support.distance[a] < support.distance[b]; });
   int positive = 0;
   const auto median = static_cast<std::size_t>(std::clamp(support.count / 2, 2, support.count - 3));
-  for (std::size_t i = median - 2; i <= median + 2; ++i) positive += along(order[i]) > 0;
+  for (std::size_t i = median - 2; i <= median + 2; ++i) {
+    const std::size_t at = order[i];
+    positive += support.x[at] * axis.x() + support.y[at] * axis.y() + support.z[at] * axis.z() > 0;
+  }
   return positive < 3 ? Eigen::Vector3d(-axis) : axis;
+}
+
+/// How many of the support lie ahead on each of two axes, or beside.
+std::array<int, 2> count_ahead(const std::array<Eigen::Vector3d, 2>& axes, const Support& support) {
+  std::array<int, 2> ahead;
+  vectorized([&](auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
+    Lanes count[2] = {zero, zero}, axis[2][3];
+    for (std::size_t which : {0, 1})
+      for (int i = 0; i < 3; ++i) axis[which][i] = Lanes::fill(axes[which](i));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
+      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
+      for (std::size_t which : {0, 1}) {
+        const Lanes along = x * axis[which][0] + y * axis[which][1] + z * axis[which][2];
+        count[which] = select(zero <= along, count[which] + one, count[which]);
+      }
+    }
+    const int padding = padded(support.count) - support.count;  // lies at the point: ahead
+    for (std::size_t which : {0, 1}) ahead[which] = static_cast<int>(sum(count[which])) - padding;
+  });
+  return ahead;
 }
 
 /// The support of every vertex that is asked for, through a grid.
@@ -53,7 +64,8 @@ class SupportFinder {
         nx_(grid_.by_slot(normals.col(0))),
         ny_(grid_.by_slot(normals.col(1))),
         nz_(grid_.by_slot(normals.col(2))),
-        squared_(rim ? radius * radius : std::nextafter(radius * radius, 0)),
+        squared_(  // finite: the padding of the grid is not near
+            std::min(rim ? radius * radius : std::nextafter(radius * radius, 0), std::numeric_limits<double>::max())),
         slots_(static_cast<std::size_t>(grid_.size())) {
     for (int slot = 0; slot < grid_.size(); ++slot) slots_[static_cast<std::size_t>(grid_.row(slot))] = slot;
   }
@@ -68,19 +80,19 @@ class SupportFinder {
     return order;
   }
 
-  CellSweep sweep() const { return {grid_, kReach}; }
+  /// Where a walk has come to.
+  struct Place {
+    CellSweep sweep;
+    int end = 0;                    // of the slots of the cell
+    std::vector<SlotRange> around;  // it
+  };
+  Place start() const { return {CellSweep(grid_, kReach), 0, {}}; }
 
   /// Vertices must come in the order of walk().
-  void find(int vertex, CellSweep& sweep, std::vector<SlotRange>& ranges, Support& support) const {
-    const auto slot = static_cast<std::size_t>(slot_of(vertex));
-    ranges.clear();
-    sweep.around(grid_.cell_of(static_cast<int>(slot)), ranges);
-    std::size_t most = kLanes;
-    for (const SlotRange& range : ranges) most += static_cast<std::size_t>(range.end - range.begin);
-    for (AlignedColumn* column :
-         {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
-      if (column->size() < most) column->resize(2 * most);
-    collect(slot, ranges, support);
+  void find(int vertex, Place& place, Support& support) const {
+    const int slot = slot_of(vertex);
+    if (slot >= place.end) move_to(grid_.cell_of(slot), place, support);
+    collect(static_cast<std::size_t>(slot), place.around, support);
     measure(support);
   }
 
@@ -89,31 +101,41 @@ class SupportFinder {
 
   int slot_of(int vertex) const { return slots_[static_cast<std::size_t>(vertex)]; }
 
+  void move_to(int cell, Place& place, Support& support) const {
+    place.end = grid_.end(cell);
+    place.around.clear();
+    place.sweep.around(cell, place.around);
+    std::size_t most = kLanes;
+    for (const SlotRange& range : place.around) most += static_cast<std::size_t>(range.end - range.begin);
+    for (AlignedColumn* column :
+         {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
+      if (column->size() < most) column->resize(2 * most);
+  }
+
   void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
-    thread_local std::vector<int> inside;
-    const double x = grid_.x()[slot], y = grid_.y()[slot], z = grid_.z()[slot], squared = squared_;
-    if (inside.size() < support.x.size()) inside.resize(support.x.size());
-    std::size_t count = 0;
     vectorized([&](auto kind) {
       using Lanes = typename decltype(kind)::Lanes;
-      const SlotRange* const first = ranges.data();
-      visit_within<Lanes>(grid_, first, first + ranges.size(), x, y, z, squared,
-                          [&](auto within, Lanes dx, Lanes dy, Lanes dz, std::size_t at) {
-                            double distances[kLanes];
-                            select(within, dx * dx + dy * dy + dz * dz, Lanes::fill(0)).store(distances);
-                            // Written always, kept if inside: a branch would be guessed wrong for half of them.
-                            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                              inside[count] = static_cast<int>(at + lane);
-                              count += distances[lane] > 0 ? 1 : 0;
-                            }
-                          });
+      const Lanes x = Lanes::fill(grid_.x()[slot]), y = Lanes::fill(grid_.y()[slot]), z = Lanes::fill(grid_.z()[slot]),
+                  squared = Lanes::fill(squared_), zero = Lanes::fill(0);
+      const double* const from[] = {grid_.x().data(), grid_.y().data(), grid_.z().data(),
+                                    nx_.data(),       ny_.data(),       nz_.data()};
+      double* const to[] = {support.x.data(),  support.y.data(),  support.z.data(),
+                            support.nx.data(), support.ny.data(), support.nz.data()};
+      std::size_t count = 0;
+      int at = 0;
+      // By whole cache lines: what else stands in them lies beyond the radius, or in the next range, which goes on behind.
+      for (const SlotRange& range : ranges)
+        for (at = std::max(at, range.begin / kLanes * kLanes); at < range.end; at += kLanes) {
+          const Lanes dx = Lanes::load(from[0] + at) - x, dy = Lanes::load(from[1] + at) - y,
+                      dz = Lanes::load(from[2] + at) - z, away = dx * dx + dy * dy + dz * dz;
+          const unsigned chosen = bits(away <= squared) & bits(zero < away);
+          if (chosen == 0) continue;
+          dx.pack(chosen, to[0] + count), dy.pack(chosen, to[1] + count), dz.pack(chosen, to[2] + count);
+          for (int i = 3; i < 6; ++i) Lanes::load(from[i] + at).pack(chosen, to[i] + count);
+          count += static_cast<std::size_t>(__builtin_popcount(chosen));
+        }
+      support.count = static_cast<int>(count);
     });
-    for (std::size_t at = 0; at < count; ++at) {
-      const auto i = static_cast<std::size_t>(inside[at]);
-      support.x[at] = grid_.x()[i] - x, support.y[at] = grid_.y()[i] - y, support.z[at] = grid_.z()[i] - z;
-      support.nx[at] = nx_[i], support.ny[at] = ny_[i], support.nz[at] = nz_[i];
-    }
-    support.count = static_cast<int>(count);
   }
 
   /// The distances, and nothing in the padding.
@@ -185,8 +207,10 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
   moments /= weights;
   if (!moments.allFinite()) return std::nullopt;                         // every vertex exactly at the rim
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);  // ascending eigenvalues
-  const Eigen::Vector3d x = towards_majority(solver.eigenvectors().col(2), support);
-  const Eigen::Vector3d z = towards_majority(solver.eigenvectors().col(0), support);
+  const std::array<Eigen::Vector3d, 2> axes{solver.eigenvectors().col(2), solver.eigenvectors().col(0)};
+  const auto ahead = count_ahead(axes, support);
+  const Eigen::Vector3d x = towards_majority(axes[0], ahead[0], support);
+  const Eigen::Vector3d z = towards_majority(axes[1], ahead[1], support);
   LocalReferenceFrame frame;
   frame.row(0) = x;
   frame.row(1) = z.cross(x);
@@ -216,13 +240,12 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
   descriptors.features.resize(kShotSize, count);
   constexpr std::size_t kBlock = 64;
   parallel(static_cast<int>((order.size() + kBlock - 1) / kBlock), [&](int block) {
-    CellSweep sweep = finder.sweep();
-    std::vector<SlotRange> ranges;
+    auto place = finder.start();
     Support support;
     for (std::size_t at = static_cast<std::size_t>(block) * kBlock;
          at < std::min(order.size(), (static_cast<std::size_t>(block) + 1) * kBlock); ++at) {
       const std::size_t i = order[at];
-      finder.find(keypoints[i], sweep, ranges, support);
+      finder.find(keypoints[i], place, support);
       outcomes[i] = Outcome::SmallSupport;
       if (support.count < options.minimum_support) continue;
       outcomes[i] = Outcome::NoFrame;

@@ -14,7 +14,8 @@ namespace corral {
 namespace {
 
 constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
-constexpr std::int64_t kSlices = 8;                         // of a cell along x
+constexpr int kSliceBits = 3, kMostSliceBits = 6;           // a cell has at least 8 slices along x
+constexpr int kDigitBits = 11;                              // of the sort of the keys
 constexpr std::ptrdiff_t kFew = 100;                        // points that insertion sorts
 constexpr double kMostCells = 5e17;                         // keys with their slices are 63 bits
 
@@ -102,12 +103,11 @@ CellKeys number_cells(const Points& points, const Eigen::RowVector3d& corner, do
 /// Sorts by key(item), least significant digits first; digits that all keys share cost a look.
 template <class Item, class Key>
 void radix_sort(std::vector<Item>& items, const Key& key) {
-  constexpr int kBits = 11;
-  constexpr std::size_t kBuckets = std::size_t{1} << kBits;
+  constexpr std::size_t kBuckets = std::size_t{1} << kDigitBits;
   std::vector<Item> other(items.size());
   std::int64_t all = 0;
   for (const Item& item : items) all |= key(item);
-  for (int shift = 0; shift < 63 && (all >> shift) != 0; shift += kBits) {
+  for (int shift = 0; shift < 63 && (all >> shift) != 0; shift += kDigitBits) {
     const auto digit = [&](const Item& item) { return static_cast<std::size_t>(key(item) >> shift) & (kBuckets - 1); };
     std::array<std::size_t, kBuckets> places{};
     for (const Item& item : items) ++places[digit(item)];
@@ -116,6 +116,16 @@ void radix_sort(std::vector<Item>& items, const Key& key) {
     for (const Item& item : items) other[places[digit(item)]++] = item;
     items.swap(other);
   }
+}
+
+/// Slices leave little to the sort within a cell: as many as cost no further digit of the keys.
+int slice_bits_for(const std::vector<std::int64_t>& keys) {
+  std::int64_t all = 0;
+  for (const std::int64_t key : keys) all |= key;
+  int bits = kSliceBits;
+  while (bits < 63 && all >> (bits - kSliceBits) != 0) ++bits;
+  const int free = std::min(63, (bits + kDigitBits - 1) / kDigitBits * kDigitBits) - bits;
+  return std::min(kSliceBits + free, kMostSliceBits);
 }
 
 /// By insertion: the fastest for a few that are nearly in order.
@@ -159,15 +169,17 @@ void PointGrid::sort_into_cells(const Points& points) {
     int row;
   };
   std::vector<Item> items(static_cast<std::size_t>(points.rows()));
+  int slice_bits = 0;
   {
     const CellKeys cells = number_cells(points, corner_, side_);
     row_step_ = cells.row_step;
     layer_step_ = cells.layer_step;
+    slice_bits = slice_bits_for(cells.keys);
+    const auto slices = static_cast<double>(std::int64_t{1} << slice_bits);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const double x = points(static_cast<Eigen::Index>(i), 0), place = (x - corner_.x()) / side_;
-      // Slices of a cell along x leave little to the sort within it.
-      const double slice = (place - std::floor(place)) * kSlices;
-      items[i] = {cells.keys[i] * kSlices + (slice < kSlices ? static_cast<std::int64_t>(slice) : 0), x,
+      const double slice = (place - std::floor(place)) * slices;
+      items[i] = {(cells.keys[i] << slice_bits) + (slice < slices ? static_cast<std::int64_t>(slice) : 0), x,
                   static_cast<int>(i)};
     }
   }
@@ -177,8 +189,8 @@ void PointGrid::sort_into_cells(const Points& points) {
   };
   for (auto first = items.begin(); first != items.end();) {
     auto last = first;
-    const std::int64_t cell = first->key / kSlices;
-    while (last != items.end() && last->key / kSlices == cell) ++last;
+    const std::int64_t cell = first->key >> slice_bits;
+    while (last != items.end() && last->key >> slice_bits == cell) ++last;
     const auto is_less = [&](const Item& a, const Item& b) { return a.x < b.x || (a.x == b.x && rest(a) < rest(b)); };
     if (last - first <= kFew)
       sort_few(first, last, is_less);
@@ -190,8 +202,8 @@ void PointGrid::sort_into_cells(const Points& points) {
   }
   begins_.push_back(static_cast<int>(items.size()));
   rows_.resize(items.size());
-  for (std::size_t slot = 0; slot < items.size(); ++slot) rows_[slot] = items[slot].row;
-  x_ = by_slot(points.col(0));
+  x_.resize(static_cast<std::size_t>(padded(size()) + kLanes), std::numeric_limits<double>::infinity());
+  for (std::size_t slot = 0; slot < items.size(); ++slot) rows_[slot] = items[slot].row, x_[slot] = items[slot].x;
   y_ = by_slot(points.col(1));
   z_ = by_slot(points.col(2));
 }

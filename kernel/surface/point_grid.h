@@ -25,7 +25,7 @@ class PointGrid {
 
   int size() const { return static_cast<int>(rows_.size()); }
   int row(int slot) const { return rows_[static_cast<std::size_t>(slot)]; }
-  const AlignedColumn& x() const { return x_; }  ///< by slot
+  const AlignedColumn& x() const { return x_; }  ///< by slot, padded with infinity, which is near to nothing
   const AlignedColumn& y() const { return y_; }
   const AlignedColumn& z() const { return z_; }
 

@@ -107,6 +107,19 @@ TEST(DescribeShot, SupportIsCountedWithoutTheKeypoint) {
   }
 }
 
+TEST(DescribeShot, WhatPadsTheGridIsNoSupport) {
+  Mesh mesh = testing::bumpy_sphere(3, 5);  // its highest vertex, the last of the grid, next to the origin
+  Eigen::Index last = 0;
+  mesh.vertices.col(2).maxCoeff(&last);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(mesh.vertices.row(last) + Eigen::RowVector3d(0, 0, 1e-3));
+  ASSERT_NE(mesh.vertices.rows() % kLanes, 0);
+  const double resolution = point_resolution(mesh.vertices);
+  const auto row = static_cast<int>(last);
+  const int count = support_of(mesh.vertices, mesh.vertices, vertex_of(mesh, row), 3 * resolution).count;
+  EXPECT_EQ(describe(mesh, {row}, resolution, {3, count}).vertices.size(), 1u);
+  EXPECT_EQ(describe(mesh, {row}, resolution, {3, count + 1}).vertices.size(), 0u);
+}
+
 TEST(DescribeShot, TheRimIsInsideButForPcl) {
   // Twelve vertices near the first, and twelve exactly at the radius.
   const Points near = 0.5 * testing::icosphere(0).vertices;

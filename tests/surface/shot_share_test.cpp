@@ -58,6 +58,19 @@ TEST(ShotShares, ElevationIsThatOfTheArcCosine) {
   }
 }
 
+TEST(ShotShares, NextToTheBordersNoShareIsNegative) {
+  double least = 1;
+  for (int step = -1000; step <= 1000; ++step) {
+    const double angle = std::acos(-1.0) / 4 + step * 1e-14;
+    for (const double x : {0.3, 0.7, 1.1})
+      for (const double turn : {1.0, -1.0}) {
+        const Eigen::Vector3d place(x, 0, turn * x * std::tan(angle));
+        least = std::min({least, votes_of(place).minCoeff(), votes_of({0, -x, place.z()}).minCoeff()});
+      }
+  }
+  EXPECT_GE(least, 0);
+}
+
 TEST(ShotShares, NextToTheBordersTheSectorsAreRight) {
   for (int border = -4; border < 4; ++border)
     for (const double aside : {-1e-9, -1e-13, 1e-13, 1e-9}) {
