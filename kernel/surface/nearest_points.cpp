@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "kernel/spatial_order.h"
@@ -19,14 +17,10 @@ constexpr double kSlack = 1.25;       // of the limit, so that queries just beyo
 constexpr std::size_t kShare = 4096;  // places that one thread takes at a time
 constexpr int kDeepest = 12;          // levels of eight entries: more than there are row numbers
 
-/// Calls visit(lane) for the lanes on which a comparison holds.
-template <class Lanes, class Comparison, class Visit>
-CORRAL_INLINE void visit_lanes(Comparison holds, const Visit& visit) {
-  std::uint8_t flags[kLanes];
-  select(holds, Lanes::fill(1), Lanes::fill(0)).store(flags);
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, flags, sizeof bits);
-  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctzll(bits)) / 8);
+/// Calls visit(lane) for the lanes whose bits are set.
+template <class Visit>
+CORRAL_INLINE void visit_lanes(unsigned bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctz(bits)));
 }
 
 }  // namespace
@@ -160,7 +154,7 @@ struct NearestTracker::Search {
     double squares[kLanes];
     squared.store(squares);
     const int before = size;
-    visit_lanes<Lanes>(squared <= Lanes::fill(std::min(limit, kLargest)), [&](std::size_t i) {
+    visit_lanes(bits(squared <= Lanes::fill(std::min(limit, kLargest))), [&](std::size_t i) {
       waiting[size] = {squares[i], node.child[i]};
       if (size > before && waiting[size - 1].squared < squares[i]) std::swap(waiting[size - 1], waiting[size]);
       ++size;
@@ -208,21 +202,20 @@ void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t la
     const Lanes sure = larger(zero, Lanes::load(&f.clearance[place]) * Lanes::fill(1 - kRounding) - moved);
     const Lanes is_finite = select(magnitude(x + y + z) <= most, one, zero);
     const Lanes is_unsure = select(smaller(squared_from(f.target), limit_squared) < sure * sure, zero, is_finite);
+    const unsigned unsure = bits(zero < is_unsure);
     double low[3] = {kInfinity, kInfinity, kInfinity}, high[3] = {-kInfinity, -kInfinity, -kInfinity};
-    visit_lanes<Lanes>(zero < is_unsure, [&](std::size_t lane) {
+    visit_lanes(unsure, [&](std::size_t lane) {
       for (int axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], f.source[axis][place + lane]);
         high[axis] = std::max(high[axis], f.source[axis][place + lane]);
       }
     });
-    if (low[0] < kInfinity) {
+    if (unsure != 0) {
       // The second nearest is not farther than before by more than the motion.
       const Lanes reach = smaller(farthest, (Lanes::load(&f.second[place]) + moved) * Lanes::fill(1 + kRounding));
       Search<Lanes> search{x, y, z, select(zero < is_unsure, reach * reach, Lanes::fill(-1)), none, none, none, none};
       search.template run<false>(tree_, low, high);
-      bool has_ties = false;
-      visit_lanes<Lanes>(search.second <= smaller(search.best, most), [&](std::size_t) { has_ties = true; });
-      if (has_ties) search.template run<true>(tree_, low, high);
+      if (bits(search.second <= smaller(search.best, most)) != 0) search.template run<true>(tree_, low, high);
 
       const auto keep = [&](const Lanes& found, AlignedColumn& column) {
         select(zero < is_unsure, found, Lanes::load(&column[place])).store(&column[place]);
@@ -235,7 +228,7 @@ void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t la
       keep(square_root(smaller(search.second, larger(search.bound_squared, zero))), f.clearance);
       double leaves[kLanes];
       search.leaf.store(leaves);
-      visit_lanes<Lanes>(zero < is_unsure, [&](std::size_t lane) {
+      visit_lanes(unsure, [&](std::size_t lane) {
         const std::size_t at = place + lane;
         for (AlignedColumn& column : f.target) column[at] = kInfinity;
         if (f.row[at] == kInfinity) return;
