@@ -41,6 +41,7 @@ using Integers16 [[gnu::vector_size(64)]] = std::int32_t;
 enum class Order { Less, LessEqual, Equal };
 template <Order kOrder, class Numbers>
 struct Comparison {
+  static constexpr int kCount = sizeof(Numbers) / sizeof(Numbers{}[0]);
   Numbers a, b;
   CORRAL_INLINE Numbers choose(Numbers yes, Numbers no) const {
     if constexpr (kOrder == Order::Less)
@@ -85,6 +86,19 @@ struct Register {
     __builtin_memcpy(to, &stored, sizeof(Vector));
   }
 
+  /// Writes the numbers whose bits are set one behind the other, and anything behind them up to a register in all.
+  CORRAL_INLINE void pack(unsigned which, Number* to) const {
+    if constexpr (sizeof(Numbers) == 64 && sizeof(Number) == 4) {
+      Register packed;
+      asm("vcompressps %1, %0%{%2%}%{z%}" : "=v"(packed.value) : "v"(value), "Yk"(static_cast<std::uint16_t>(which)));
+      packed.store(to);
+    } else {
+      Number numbers[kCount];
+      store(numbers);
+      for (; which != 0; which &= which - 1) *to++ = numbers[__builtin_ctz(which)];
+    }
+  }
+
   friend CORRAL_INLINE Register operator+(Register a, Register b) { return {a.value + b.value}; }
   friend CORRAL_INLINE Register operator-(Register a, Register b) { return {a.value - b.value}; }
   friend CORRAL_INLINE Register operator*(Register a, Register b) { return {a.value * b.value}; }
@@ -127,8 +141,42 @@ struct Register {
 
 template <class Half>
 struct ComparisonPair {
+  static constexpr int kCount = 2 * Half::kCount;
   Half low, high;
 };
+
+/// Where a comparison is true: one bit per lane, the first the lowest. Compilers have no word for it.
+template <Order kOrder, class Numbers>
+CORRAL_INLINE unsigned bits(Comparison<kOrder, Numbers> mask) {
+  constexpr bool kFloats = mask.kCount * 4 == sizeof(Numbers);
+  unsigned result;
+  if constexpr (sizeof(Numbers) == 64) {
+    constexpr int kPredicate = kOrder == Order::Less ? 1 : kOrder == Order::LessEqual ? 2 : 0;
+    std::uint16_t found;
+    if constexpr (kFloats)
+      asm("vcmpps %3, %2, %1, %0" : "=k"(found) : "v"(mask.a), "vm"(mask.b), "i"(kPredicate));
+    else
+      asm("vcmppd %3, %2, %1, %0" : "=k"(found) : "v"(mask.a), "vm"(mask.b), "i"(kPredicate));
+    result = found;
+  } else {
+    const Numbers yes = reinterpret_cast<Numbers>(kOrder == Order::Less        ? mask.a < mask.b
+                                                  : kOrder == Order::LessEqual ? mask.a <= mask.b
+                                                                               : mask.a == mask.b);
+    if constexpr (sizeof(Numbers) == 32 && kFloats)
+      asm("vmovmskps %1, %0" : "=r"(result) : "x"(yes));
+    else if constexpr (sizeof(Numbers) == 32)
+      asm("vmovmskpd %1, %0" : "=r"(result) : "x"(yes));
+    else if constexpr (kFloats)
+      asm("movmskps %1, %0" : "=r"(result) : "x"(yes));
+    else
+      asm("movmskpd %1, %0" : "=r"(result) : "x"(yes));
+  }
+  return result;
+}
+template <class Half>
+CORRAL_INLINE unsigned bits(ComparisonPair<Half> mask) {
+  return bits(mask.low) | bits(mask.high) << Half::kCount;
+}
 
 /// Two halves, where one register does not hold all lanes.
 template <class Half>
@@ -143,6 +191,11 @@ struct Pair {
   template <class Stored>
   CORRAL_INLINE void store(Stored* to) const {
     low.store(to), high.store(to + Half::kCount);
+  }
+
+  CORRAL_INLINE void pack(unsigned which, Number* to) const {
+    low.pack(which & ((1u << Half::kCount) - 1), to);
+    high.pack(which >> Half::kCount, to + __builtin_popcount(which & ((1u << Half::kCount) - 1)));
   }
 
   friend CORRAL_INLINE Pair operator+(Pair a, Pair b) { return {a.low + b.low, a.high + b.high}; }

@@ -75,11 +75,10 @@ struct PlaneFits {
       column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);
   }
 
-  /// The moments of the points of some ranges within a squared distance of a slot, and of some more slots; returns how
-  /// many there are.
+  /// The moments of the points of some ranges within a squared distance of a slot; returns how many there are.
   template <class Lanes>
   CORRAL_INLINE int fit(std::size_t at, const PointGrid& grid, const SlotRange* first, const SlotRange* last,
-                        std::size_t slot, double squared, const std::vector<std::size_t>& more = {}) {
+                        std::size_t slot, double squared) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;
@@ -91,11 +90,28 @@ struct PlaneFits {
                           sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
                           syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
                         });
-    Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
-    for (const std::size_t other : more)
-      sums.add(grid.x()[other] - grid.x()[slot], grid.y()[other] - grid.y()[slot], grid.z()[other] - grid.z()[slot]);
+    const Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
     put(at, sums);
     return static_cast<int>(sums.count);
+  }
+
+  /// The moments of so many chosen points about one of them; the columns go on with that one up to a multiple of eight.
+  template <class Lanes>
+  CORRAL_INLINE void fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
+                                double own_x, double own_y, double own_z) {
+    const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z);
+    Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero;
+    for (int i = 0; i < count; i += kLanes) {
+      const Lanes dx = Lanes::load(x + i) - cx, dy = Lanes::load(y + i) - cy, dz = Lanes::load(z + i) - cz;
+      sx = sx + dx, sy = sy + dy, sz = sz + dz;
+      sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
+      syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
+    }
+    put(at, {static_cast<double>(count),
+             sum(sx),
+             sum(sy),
+             sum(sz),
+             {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}});
   }
 
   /// The moments of chosen points, for the few that lanes do not find.

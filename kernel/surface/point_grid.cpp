@@ -212,15 +212,19 @@ int PointGrid::cell_of(int slot) const {
 
 Eigen::Array3d PointGrid::within_cell(int slot) const {
   const auto i = static_cast<std::size_t>(slot);
-  const Eigen::Array3d place = (Eigen::Array3d(x_[i], y_[i], z_[i]) - corner_.transpose().array()) / side_;
-  return place - place.floor();
+  const auto share = [&](double value, double corner) {
+    const double place = (value - corner) / side_;
+    return place < 4e18 ? place - static_cast<double>(static_cast<std::int64_t>(place)) : 0;
+  };
+  return {share(x_[i], corner_.x()), share(y_[i], corner_.y()), share(z_[i], corner_.z())};
 }
 
 double PointGrid::sure_radius(int slot, int reach) const {
   const Eigen::Array3d inside = within_cell(slot);
-  const double nearest_face = std::min(inside.minCoeff(), 1 - inside.maxCoeff());
+  const double lowest = std::min({inside.x(), inside.y(), inside.z()}),
+               highest = std::max({inside.x(), inside.y(), inside.z()});
   // A point on a face may be counted to either side.
-  return std::max(0.0, (reach + nearest_face) * side_ * (1 - kRounding / 2) - rounding_);
+  return std::max(0.0, (reach + std::min(lowest, 1 - highest)) * side_ * (1 - kRounding / 2) - rounding_);
 }
 
 double PointGrid::from_middle(int slot) const { return (within_cell(slot) - 0.5).square().sum() * side_ * side_; }

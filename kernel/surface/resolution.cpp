@@ -48,7 +48,7 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
   const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
   AlignedColumn squares(grid.x().size(), 0.0);
   const auto left = NearestSweep(grid).run(
-      parallel, [&](int slot, const SlotRange* first, const SlotRange* last, double sure_squared, auto kind) {
+      parallel, [&](int slot, const SlotRange* first, const SlotRange* last, bool, double sure_squared, auto kind) {
         const auto i = static_cast<std::size_t>(slot);
         squares[i] = nearest_other<typename decltype(kind)::Lanes>(grid, first, last, i);
         return squares[i] <= sure_squared;
