@@ -15,10 +15,10 @@ namespace {
 /// The points around a cell, next to each other: in double, and in floats relative to one of them in sides of a cell.
 class Crowd {
  public:
-  AlignedColumn x, y, z;
-  FloatColumn near_x, near_y, near_z;
+  Surrounding<3> places;
+  FloatColumn near[3];  ///< what follows up to a multiple of sixteen is infinitely far away
 
-  int size() const { return size_; }  ///< what follows up to a multiple of sixteen is infinitely far away
+  int size() const { return places.size(); }
 
   float near_to(double value, int axis) const { return static_cast<float>((value - origin_[axis]) * scale_); }
 
@@ -33,42 +33,33 @@ class Crowd {
 
   template <class Lanes>
   CORRAL_INLINE void collect(const PointGrid& grid, const SlotRange* first, const SlotRange* last) {
-    std::size_t count = 0;
-    for (const SlotRange* range = first; range != last; ++range)
-      count += static_cast<std::size_t>(range->end - range->begin);
-    size_ = static_cast<int>(count);
-    if (x.size() < count + 2 * kFloatLanes) {
-      for (AlignedColumn* column : {&x, &y, &z}) column->resize(2 * count + 2 * kFloatLanes);
-      for (FloatColumn* column : {&near_x, &near_y, &near_z}) column->resize(2 * count + 2 * kFloatLanes);
-    }
-    const auto origin = static_cast<std::size_t>(first->begin);
-    origin_[0] = grid.x()[origin], origin_[1] = grid.y()[origin], origin_[2] = grid.z()[origin];
+    places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
     scale_ = 1 / grid.cell_side();
-    const Lanes ox = Lanes::fill(origin_[0]), oy = Lanes::fill(origin_[1]), oz = Lanes::fill(origin_[2]),
-                scale = Lanes::fill(scale_);
-    Lanes extent = Lanes::fill(0);
-    std::size_t to = 0;
-    for (const SlotRange* range = first; range != last; ++range) {
-      for (int slot = range->begin; slot < range->end; slot += kLanes) {  // what is too many is written over
-        const auto from = static_cast<std::size_t>(slot), at = to + static_cast<std::size_t>(slot - range->begin);
-        const Lanes from_x = Lanes::load(&grid.x()[from]), from_y = Lanes::load(&grid.y()[from]),
-                    from_z = Lanes::load(&grid.z()[from]);
-        from_x.store(&x[at]), from_y.store(&y[at]), from_z.store(&z[at]);
-        const Lanes dx = (from_x - ox) * scale, dy = (from_y - oy) * scale, dz = (from_z - oz) * scale;
-        dx.store(&near_x[at]), dy.store(&near_y[at]), dz.store(&near_z[at]);
-        extent = larger(extent, larger(magnitude(dx), larger(magnitude(dy), magnitude(dz))));
+    const auto room = static_cast<std::size_t>(padded(size(), kFloatLanes));
+    static constexpr double kLane[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const Lanes lane = Lanes::load(kLane), zero = Lanes::fill(0);
+    Lanes extent = zero;
+    for (int axis = 0; axis < 3; ++axis) {
+      FloatColumn& column = near[axis];
+      if (column.size() < room) column.resize(2 * room);
+      origin_[axis] = places[axis][0];
+      const Lanes origin = Lanes::fill(origin_[axis]), scale = Lanes::fill(scale_);
+      const double* const from = places[axis];
+      float* const to = column.data();
+      for (int i = 0; i < size(); i += kLanes) {
+        const Lanes offset = (Lanes::load(from + i) - origin) * scale;
+        offset.store(to + i);
+        extent = larger(extent, select(lane < Lanes::fill(size() - i), magnitude(offset), zero));
       }
-      to += static_cast<std::size_t>(range->end - range->begin);
     }
-    extent_ = -smallest(Lanes::fill(0) - extent);
-    std::fill_n(&x[to], kFloatLanes, std::numeric_limits<double>::infinity());
-    std::fill_n(&near_x[to], kFloatLanes, std::numeric_limits<float>::infinity());
+    std::fill_n(&near[0][static_cast<std::size_t>(size())], room - static_cast<std::size_t>(size()),
+                std::numeric_limits<float>::infinity());
+    extent_ = -smallest(zero - extent);
   }
 
  private:
   static constexpr double kUnit = 0x1p-24;
   static constexpr double kTiny = 1e-20;  // more than underflow takes away
-  int size_ = 0;
   double origin_[3] = {}, scale_ = 1, extent_ = 0;
 };
 
@@ -88,7 +79,7 @@ struct Shortlist {
     static constexpr float kLane[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const Floats cx = Floats::fill(at[0]), cy = Floats::fill(at[1]), cz = Floats::fill(at[2]),
                  limit = Floats::fill(squared), step = Floats::fill(kFloatLanes);
-    const float *x = crowd.near_x.data(), *y = crowd.near_y.data(), *z = crowd.near_z.data();
+    const float *x = crowd.near[0].data(), *y = crowd.near[1].data(), *z = crowd.near[2].data();
     Floats place = Floats::load(kLane);
     float *to_places = places.data(), *to_squares = squares.data();
     for (int i = 0; i < crowd.size(); i += kFloatLanes, place = place + step) {
@@ -178,7 +169,7 @@ class NearestPlanes {
     const double x = grid_.x()[slot], y = grid_.y()[slot], z = grid_.z()[slot];
     if (!choose<Kind>(slot, first, sure_squared, scratch)) return false;
     const int* const chosen = scratch.chosen.data();
-    const double *from_x = crowd.x.data(), *from_y = crowd.y.data(), *from_z = crowd.z.data();
+    const double *from_x = crowd.places[0], *from_y = crowd.places[1], *from_z = crowd.places[2];
     double *to_x = scratch.x.data(), *to_y = scratch.y.data(), *to_z = scratch.z.data();
     for (int i = 0; i < k_; ++i) to_x[i] = from_x[chosen[i]], to_y[i] = from_y[chosen[i]], to_z[i] = from_z[chosen[i]];
     for (int i = k_; i < padded(k_); ++i) to_x[i] = x, to_y[i] = y, to_z[i] = z;

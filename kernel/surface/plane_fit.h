@@ -30,7 +30,7 @@ struct SymmetricEigen {
     Lanes a[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) vector[i][j] = Lanes::fill(i == j ? 1 : 0);
-    constexpr int kSweeps = 5;  // off-diagonals shrink quadratically: rounding is reached after four
+    constexpr int kSweeps = 4;  // off-diagonals shrink quadratically: rounding is reached after four
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       rotate(a, 0, 1, 2);
       rotate(a, 0, 2, 1);
@@ -75,15 +75,14 @@ struct PlaneFits {
       column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);
   }
 
-  /// The moments of the points of some ranges within a squared distance of a slot; returns how many there are.
+  /// The moments of the points around a slot within a squared distance; returns how many there are.
   template <class Lanes>
-  CORRAL_INLINE int fit(std::size_t at, const PointGrid& grid, const SlotRange* first, const SlotRange* last,
-                        std::size_t slot, double squared) {
+  CORRAL_INLINE int fit(std::size_t slot, const PointGrid& grid, const Surrounding<3>& around, double squared) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;
-    visit_within<Lanes>(grid, first, last, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
-                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, std::size_t) {
+    visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
+                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) {
                           dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
                           n = n + select(inside, one, zero);
                           sx = sx + dx, sy = sy + dy, sz = sz + dz;
@@ -91,7 +90,7 @@ struct PlaneFits {
                           syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
                         });
     const Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
-    put(at, sums);
+    put(slot, sums);
     return static_cast<int>(sums.count);
   }
 
@@ -107,11 +106,8 @@ struct PlaneFits {
       sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
       syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
     }
-    put(at, {static_cast<double>(count),
-             sum(sx),
-             sum(sy),
-             sum(sz),
-             {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}});
+    const Moments<double> moments{sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
+    put(at, {static_cast<double>(count), sum(sx), sum(sy), sum(sz), moments});
   }
 
   /// The moments of chosen points, for the few that lanes do not find.
