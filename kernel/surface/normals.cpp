@@ -144,13 +144,19 @@ class NearestPlanes {
   }
 
  private:
+  struct Candidate {
+    double squared;
+    int row, place;
+  };
+
   /// What a thread works with.
   struct Scratch {
     Crowd crowd;
     Shortlist shortlist;
     Indices chosen;         // places in the crowd, ascending
     AlignedColumn x, y, z;  // of those
-    float hint = 1;         // where to look first, in sides of a cell; what is found does not depend on it
+    std::vector<Candidate> candidates;
+    float hint = 1;  // where to look first, in sides of a cell; what is found does not depend on it
   };
 
   template <class Kind>
@@ -229,11 +235,8 @@ class NearestPlanes {
   /// nearest of all.
   bool choose_exactly(std::size_t slot, const SlotRange* first, int count, double sure_squared,
                       Scratch& scratch) const {
-    struct Candidate {
-      double squared;
-      int row, place;
-    };
-    std::vector<Candidate> candidates;
+    auto& candidates = scratch.candidates;
+    candidates.clear();
     const SlotRange* range = first;
     int begin = 0;  // place of the range
     for (int i = 0; i < count; ++i) {
@@ -254,14 +257,27 @@ class NearestPlanes {
     return true;
   }
 
+  /// Adds up in the order of the slots, as everywhere: how the nearest were found leaves no trace.
   void fit_with_tree(const std::vector<int>& slots, const ParallelFor& parallel) {
     const PointIndex index(points_);
+    Indices slot_of(static_cast<std::size_t>(grid_.size()));
+    for (int slot = 0; slot < grid_.size(); ++slot) slot_of[static_cast<std::size_t>(grid_.row(slot))] = slot;
     parallel(static_cast<int>(slots.size()), [&](int i) {
-      const int slot = slots[static_cast<std::size_t>(i)];
-      const Eigen::RowVector3d center = points_.row(grid_.row(slot));
-      Indices rows;
-      for (const Neighbor& neighbor : index.nearest(center.transpose(), k_)) rows.push_back(neighbor.index);
-      fits_.fit_rows(static_cast<std::size_t>(slot), points_, center, std::move(rows));
+      const auto own = static_cast<std::size_t>(slots[static_cast<std::size_t>(i)]);
+      const double x = grid_.x()[own], y = grid_.y()[own], z = grid_.z()[own];
+      Indices chosen;
+      for (const Neighbor& neighbor : index.nearest({x, y, z}, k_))
+        chosen.push_back(slot_of[static_cast<std::size_t>(neighbor.index)]);
+      std::sort(chosen.begin(), chosen.end());
+      chosen.resize(static_cast<std::size_t>(padded(k_)), static_cast<int>(own));
+      AlignedColumn xs, ys, zs;
+      for (const int slot : chosen) {
+        const auto other = static_cast<std::size_t>(slot);
+        xs.push_back(grid_.x()[other]), ys.push_back(grid_.y()[other]), zs.push_back(grid_.z()[other]);
+      }
+      vectorized([&](auto kind) {
+        fits_.fit_chosen<typename decltype(kind)::Lanes>(own, xs.data(), ys.data(), zs.data(), k_, x, y, z);
+      });
     });
   }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 
 #include "kernel/parallel.h"
 #include "kernel/surface/point_grid.h"
@@ -110,18 +109,6 @@ struct PlaneFits {
     put(at, {static_cast<double>(count), sum(sx), sum(sy), sum(sz), moments});
   }
 
-  /// The moments of chosen points, for the few that lanes do not find.
-  void fit_rows(std::size_t at, const Points& points, const Eigen::RowVector3d& center, Indices rows) {
-    const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2)); };
-    std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });  // whatever their numbers are
-    Sums sums{};
-    for (const int row : rows) {
-      const Eigen::RowVector3d d = points.row(row) - center;
-      sums.add(d.x(), d.y(), d.z());
-    }
-    put(at, sums);
-  }
-
   /// All normals, in blocks.
   void solve_all(const ParallelFor& parallel) {
     constexpr std::size_t kBlock = 4096;
@@ -136,10 +123,6 @@ struct PlaneFits {
   struct Sums {
     double count, x, y, z;
     Moments<double> m;
-    void add(double dx, double dy, double dz) {
-      count += 1, x += dx, y += dy, z += dz;
-      m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
-    }
   };
 
   /// Keeps the moments about the mean.
