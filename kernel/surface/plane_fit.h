@@ -68,10 +68,10 @@ struct PlaneFits {
   AlignedColumn xx, xy, xz, yy, yz, zz;
   AlignedColumn nx, ny, nz;
 
-  /// Room for so many, filled up to the step of solve().
+  /// Room for so many and a load behind the last, filled up to the step of solve().
   explicit PlaneFits(int count) {
     for (AlignedColumn* column : {&xx, &xy, &xz, &yy, &yz, &zz, &nx, &ny, &nz})
-      column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);
+      column->assign(static_cast<std::size_t>((count + kLanes + 31) / 32 * 32), 0.0);
   }
 
   /// The moments of the points around a slot within a squared distance; returns how many there are.
