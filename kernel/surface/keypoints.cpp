@@ -56,12 +56,14 @@ class HarrisOperator {
   template <class Lanes>
   CORRAL_INLINE void fit(const Block& block) {
     std::int64_t neighbors = 0;
-    for (int cell = block.first_cell; cell < block.last_cell; ++cell)
+    Surrounding<3> places;
+    for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
+      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
-        const auto i = static_cast<std::size_t>(slot);
-        neighbors += fits_.fit<Lanes>(i, grid_, around_.begin(cell), around_.end(cell), i, squared_);
+        neighbors += fits_.fit<Lanes>(static_cast<std::size_t>(slot), grid_, places, squared_);
         if (neighbors > most_) count(neighbors);  // a crowd: to its end it would take long
       }
+    }
     count(neighbors);
   }
 
@@ -77,21 +79,26 @@ class HarrisOperator {
 
   template <class Lanes>
   CORRAL_INLINE void respond(const Block& block) {
-    for (int cell = block.first_cell; cell < block.last_cell; ++cell)
+    Surrounding<6> places;  // and normals
+    for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
+      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
+                            around_.end(cell));
       for (int i = grid_.begin(cell); i < grid_.end(cell); ++i) {
         const auto slot = static_cast<std::size_t>(i);
         const Lanes zero = Lanes::fill(0);
         Lanes xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
-        visit_within<Lanes>(grid_, around_.begin(cell), around_.end(cell), grid_.x()[slot], grid_.y()[slot],
-                            grid_.z()[slot], squared_, [&](auto inside, Lanes, Lanes, Lanes, std::size_t other) {
-                              const Lanes a = select(inside, Lanes::load(&fits_.nx[other]), zero),
-                                          b = select(inside, Lanes::load(&fits_.ny[other]), zero),
-                                          c = select(inside, Lanes::load(&fits_.nz[other]), zero);
+        const double *nx = places[3], *ny = places[4], *nz = places[5];
+        visit_within<Lanes>(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
+                            [&](auto inside, Lanes, Lanes, Lanes, int other) {
+                              const Lanes a = select(inside, Lanes::load(nx + other), zero),
+                                          b = select(inside, Lanes::load(ny + other), zero),
+                                          c = select(inside, Lanes::load(nz + other), zero);
                               xx = xx + a * a, xy = xy + a * b, xz = xz + a * c;
                               yy = yy + b * b, yz = yz + b * c, zz = zz + c * c;
                             });
         response_[slot] = determinant({sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)});
       }
+    }
   }
 
   /// det of the mean: unit vectors have as many in the sum as its trace says.
@@ -113,34 +120,60 @@ class HarrisOperator {
 };
 
 /// The rows of the slots that have the largest value within a radius, and at least the smallest accepted one.
-Indices local_maxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& response,
-                     double radius) {
-  Indices maxima;
-  const double squared = radius * radius;
-  for (int cell = 0; cell < grid.cells(); ++cell) {
-    const auto first = static_cast<std::size_t>(grid.begin(cell)), last = static_cast<std::size_t>(grid.end(cell));
-    if (!(*std::max_element(&response[first], &response[last]) >= kSmallestResponse)) continue;
-    const auto beaten_by = [&](std::size_t slot, std::size_t other) {
-      if (response[other] < response[slot]) return false;
-      const double x = grid.x()[other] - grid.x()[slot], y = grid.y()[other] - grid.y()[slot],
-                   z = grid.z()[other] - grid.z()[slot];
-      if (!(x * x + y * y + z * z <= squared)) return false;
-      return response[other] > response[slot] || grid.row(static_cast<int>(other)) < grid.row(static_cast<int>(slot));
-    };
-    const auto survives = [&](std::size_t slot) {
-      for (std::size_t other = first; other < last; ++other)  // the nearest first: most are beaten there
-        if (beaten_by(slot, other)) return false;
-      for (const SlotRange* range = around.begin(cell); range != around.end(cell); ++range)
-        for (auto other = static_cast<std::size_t>(range->begin); other < static_cast<std::size_t>(range->end); ++other)
-          if (beaten_by(slot, other)) return false;
-      return true;
-    };
-    for (std::size_t slot = first; slot < last; ++slot)
-      if (response[slot] >= kSmallestResponse && survives(slot)) maxima.push_back(grid.row(static_cast<int>(slot)));
+class LocalMaxima {
+ public:
+  LocalMaxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& response, double radius)
+      : grid_(grid), around_(around), response_(response), squared_(radius * radius) {}
+
+  Indices find() const {
+    Indices maxima;
+    vectorized([&](auto kind) {
+      using Lanes = typename decltype(kind)::Lanes;
+      for (int cell = 0; cell < grid_.cells(); ++cell) {
+        const int first = grid_.begin(cell), last = grid_.end(cell);
+        int top = first;
+        for (int slot = first; slot < last; ++slot)
+          if (at(slot) > at(top)) top = slot;
+        for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
+          if (at(slot) >= kSmallestResponse && !is_beaten(slot, top) &&
+              is_highest<Lanes>(slot, around_.begin(cell), around_.end(cell)))
+            maxima.push_back(grid_.row(slot));
+      }
+    });
+    std::sort(maxima.begin(), maxima.end());
+    return maxima;
   }
-  std::sort(maxima.begin(), maxima.end());
-  return maxima;
-}
+
+ private:
+  double at(int slot) const { return response_[static_cast<std::size_t>(slot)]; }
+
+  /// Whether another slot within the radius is higher, or as high with a lower row.
+  bool is_beaten(int slot, int other) const {
+    const auto i = static_cast<std::size_t>(slot), j = static_cast<std::size_t>(other);
+    if (response_[j] < response_[i]) return false;
+    const double x = grid_.x()[j] - grid_.x()[i], y = grid_.y()[j] - grid_.y()[i], z = grid_.z()[j] - grid_.z()[i];
+    return x * x + y * y + z * z <= squared_ && (response_[j] > response_[i] || grid_.row(other) < grid_.row(slot));
+  }
+
+  /// Whether no slot of some ranges beats one; only those that are as high are looked at one by one.
+  template <class Lanes>
+  CORRAL_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
+    const Lanes own = Lanes::fill(at(slot));
+    for (const SlotRange* range = first; range != last; ++range)
+      for (int i = range->begin; i < range->end; i += kLanes)
+        for (unsigned left = bits(own <= Lanes::load(&response_[static_cast<std::size_t>(i)])); left != 0;
+             left &= left - 1) {
+          const int other = i + __builtin_ctz(left);
+          if (other < range->end && is_beaten(slot, other)) return false;
+        }
+    return true;
+  }
+
+  const PointGrid& grid_;
+  const CellNeighborhoods& around_;
+  const AlignedColumn& response_;
+  double squared_;
+};
 
 }  // namespace
 
@@ -162,7 +195,8 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
   Keypoints keypoints;
-  keypoints.vertices = local_maxima(grid, around, HarrisOperator(grid, around, radius).run(parallel), radius);
+  const AlignedColumn response = HarrisOperator(grid, around, radius).run(parallel);
+  keypoints.vertices = LocalMaxima(grid, around, response, radius).find();
   keypoints.candidates = static_cast<int>(keypoints.vertices.size());
   return keypoints;
 }

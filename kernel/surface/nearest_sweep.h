@@ -12,8 +12,9 @@ namespace corral {
 
 // Finding the nearest neighbours of every point with a grid. Only sources include this.
 
-/// Calls attempt(slot, first, last, sure_squared, lanes) for every slot with ranges of slots that hold all points within a
-/// squared distance; `attempt` says whether that was enough. If it was not it is called again with more cells, and at last
+/// Calls attempt(slot, first, last, are_new, sure_squared, lanes) for every slot with ranges of slots that hold all points
+/// within a squared distance, and whether they are others than in the call before of this thread; `attempt` says whether
+/// that was enough. If it was not it is called again with more cells, and at last
 /// for a few with all slots. The slots for which that would take long (far apart, or crowded) are returned, ascending.
 class NearestSweep {
  public:
@@ -38,8 +39,8 @@ class NearestSweep {
     const SlotRange everything{0, grid_.size()};
     parallel(static_cast<int>(all.size()), [&](int i) {
       vectorized([&](auto kind) {
-        attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, std::numeric_limits<double>::infinity(),
-                kind);
+        attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, true,
+                std::numeric_limits<double>::infinity(), kind);
       });
     });
     return {};
@@ -58,17 +59,20 @@ class NearestSweep {
     std::vector<int> left;
     int cell = slots.empty() ? 0 : grid_.cell_of(slots.front()) - 1;
     int end = 0, crowd = 0;
+    bool are_new = false;
     for (const int slot : slots) {
       while (slot >= end) end = grid_.end(++cell), crowd = -1;
       if (crowd < 0) {
         ranges.clear();
         sweep.around(cell, ranges);
         crowd = 0;
+        are_new = true;
         for (const SlotRange& range : ranges) crowd += range.end - range.begin;
       }
       const double sure = grid_.sure_radius(slot, reach);
-      if (crowd > kCrowd || !attempt(slot, ranges.data(), ranges.data() + ranges.size(), sure * sure, kind))
+      if (crowd > kCrowd || !attempt(slot, ranges.data(), ranges.data() + ranges.size(), are_new, sure * sure, kind))
         left.push_back(slot);
+      are_new = false;
     }
     slots.swap(left);
   }

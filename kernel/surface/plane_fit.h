@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 
 #include "kernel/parallel.h"
 #include "kernel/surface/point_grid.h"
@@ -30,7 +29,7 @@ struct SymmetricEigen {
     Lanes a[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) vector[i][j] = Lanes::fill(i == j ? 1 : 0);
-    constexpr int kSweeps = 5;  // off-diagonals shrink quadratically: rounding is reached after four
+    constexpr int kSweeps = 4;  // off-diagonals shrink quadratically: rounding is reached after four
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       rotate(a, 0, 1, 2);
       rotate(a, 0, 2, 1);
@@ -69,45 +68,45 @@ struct PlaneFits {
   AlignedColumn xx, xy, xz, yy, yz, zz;
   AlignedColumn nx, ny, nz;
 
-  /// Room for so many, filled up to the step of solve().
+  /// Room for so many and a load behind the last, filled up to the step of solve().
   explicit PlaneFits(int count) {
     for (AlignedColumn* column : {&xx, &xy, &xz, &yy, &yz, &zz, &nx, &ny, &nz})
-      column->assign(static_cast<std::size_t>((count + 31) / 32 * 32), 0.0);
+      column->assign(static_cast<std::size_t>((count + kLanes + 31) / 32 * 32), 0.0);
   }
 
-  /// The moments of the points of some ranges within a squared distance of a slot, and of some more slots; returns how
-  /// many there are.
+  /// The moments of the points around a slot within a squared distance; returns how many there are.
   template <class Lanes>
-  CORRAL_INLINE int fit(std::size_t at, const PointGrid& grid, const SlotRange* first, const SlotRange* last,
-                        std::size_t slot, double squared, const std::vector<std::size_t>& more = {}) {
+  CORRAL_INLINE int fit(std::size_t slot, const PointGrid& grid, const Surrounding<3>& around, double squared) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;
-    visit_within<Lanes>(grid, first, last, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
-                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, std::size_t) {
+    visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
+                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) {
                           dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
                           n = n + select(inside, one, zero);
                           sx = sx + dx, sy = sy + dy, sz = sz + dz;
                           sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
                           syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
                         });
-    Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
-    for (const std::size_t other : more)
-      sums.add(grid.x()[other] - grid.x()[slot], grid.y()[other] - grid.y()[slot], grid.z()[other] - grid.z()[slot]);
-    put(at, sums);
+    const Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
+    put(slot, sums);
     return static_cast<int>(sums.count);
   }
 
-  /// The moments of chosen points, for the few that lanes do not find.
-  void fit_rows(std::size_t at, const Points& points, const Eigen::RowVector3d& center, Indices rows) {
-    const auto key = [&](int row) { return std::make_tuple(points(row, 0), points(row, 1), points(row, 2)); };
-    std::sort(rows.begin(), rows.end(), [&](int a, int b) { return key(a) < key(b); });  // whatever their numbers are
-    Sums sums{};
-    for (const int row : rows) {
-      const Eigen::RowVector3d d = points.row(row) - center;
-      sums.add(d.x(), d.y(), d.z());
+  /// The moments of so many chosen points about one of them; the columns go on with that one up to a multiple of eight.
+  template <class Lanes>
+  CORRAL_INLINE void fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
+                                double own_x, double own_y, double own_z) {
+    const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z);
+    Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero;
+    for (int i = 0; i < count; i += kLanes) {
+      const Lanes dx = Lanes::load(x + i) - cx, dy = Lanes::load(y + i) - cy, dz = Lanes::load(z + i) - cz;
+      sx = sx + dx, sy = sy + dy, sz = sz + dz;
+      sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
+      syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
     }
-    put(at, sums);
+    const Moments<double> moments{sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
+    put(at, {static_cast<double>(count), sum(sx), sum(sy), sum(sz), moments});
   }
 
   /// All normals, in blocks.
@@ -124,10 +123,6 @@ struct PlaneFits {
   struct Sums {
     double count, x, y, z;
     Moments<double> m;
-    void add(double dx, double dy, double dz) {
-      count += 1, x += dx, y += dy, z += dz;
-      m.xx += dx * dx, m.xy += dx * dy, m.xz += dx * dz, m.yy += dy * dy, m.yz += dy * dz, m.zz += dz * dz;
-    }
   };
 
   /// Keeps the moments about the mean.

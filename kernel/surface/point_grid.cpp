@@ -135,9 +135,21 @@ void sort_few(Iterator first, Iterator last, const Less& is_less) {
     for (Iterator at = next; at != first && is_less(*at, *(at - 1)); --at) std::swap(*at, *(at - 1));
 }
 
+/// How many cells are taken: as bits, or sorted where these would be too many.
 std::size_t count_cells(std::vector<std::int64_t> keys) {
-  radix_sort(keys, [](std::int64_t key) { return key; });
-  return static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+  constexpr std::int64_t kBitsPerPoint = 256, kBits = 64;
+  const auto [least, most] = std::minmax_element(keys.begin(), keys.end());
+  const std::int64_t base = *least, extent = *most - base;
+  if (extent / kBitsPerPoint > static_cast<std::int64_t>(keys.size())) {
+    radix_sort(keys, [](std::int64_t key) { return key; });
+    return static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
+  }
+  std::vector<std::uint64_t> taken(static_cast<std::size_t>(extent / kBits) + 1, 0);
+  for (const std::int64_t key : keys)
+    taken[static_cast<std::size_t>((key - base) / kBits)] |= std::uint64_t{1} << ((key - base) % kBits);
+  std::size_t count = 0;
+  for (const std::uint64_t bits : taken) count += static_cast<std::size_t>(__builtin_popcountll(bits));
+  return count;
 }
 
 /// Coordinates far from the corner have no finer places than this.
@@ -201,6 +213,7 @@ void PointGrid::sort_into_cells(const Points& points) {
     first = last;
   }
   begins_.push_back(static_cast<int>(items.size()));
+  keys_.insert(keys_.end(), 2 * kLargestReach + 1, std::numeric_limits<std::int64_t>::max());  // where searches end
   rows_.resize(items.size());
   x_.resize(static_cast<std::size_t>(padded(size()) + kLanes), std::numeric_limits<double>::infinity());
   for (std::size_t slot = 0; slot < items.size(); ++slot) rows_[slot] = items[slot].row, x_[slot] = items[slot].x;
@@ -224,15 +237,19 @@ int PointGrid::cell_of(int slot) const {
 
 Eigen::Array3d PointGrid::within_cell(int slot) const {
   const auto i = static_cast<std::size_t>(slot);
-  const Eigen::Array3d place = (Eigen::Array3d(x_[i], y_[i], z_[i]) - corner_.transpose().array()) / side_;
-  return place - place.floor();
+  const auto share = [&](double value, double corner) {
+    const double place = (value - corner) / side_;
+    return place < 4e18 ? place - static_cast<double>(static_cast<std::int64_t>(place)) : 0;
+  };
+  return {share(x_[i], corner_.x()), share(y_[i], corner_.y()), share(z_[i], corner_.z())};
 }
 
 double PointGrid::sure_radius(int slot, int reach) const {
   const Eigen::Array3d inside = within_cell(slot);
-  const double nearest_face = std::min(inside.minCoeff(), 1 - inside.maxCoeff());
+  const double lowest = std::min({inside.x(), inside.y(), inside.z()}),
+               highest = std::max({inside.x(), inside.y(), inside.z()});
   // A point on a face may be counted to either side.
-  return std::max(0.0, (reach + nearest_face) * side_ * (1 - kRounding / 2) - rounding_);
+  return std::max(0.0, (reach + std::min(lowest, 1 - highest)) * side_ * (1 - kRounding / 2) - rounding_);
 }
 
 double PointGrid::from_middle(int slot) const { return (within_cell(slot) - 0.5).square().sum() * side_ * side_; }
@@ -259,12 +276,13 @@ void CellSweep::around(int cell, std::vector<SlotRange>& ranges) {
   const std::size_t before = ranges.size();
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
     const std::int64_t first = here + offsets_[i], last = first + 2 * reach_;
-    std::size_t& cursor = cursors_[i];
-    while (cursor < keys.size() && keys[cursor] < first) ++cursor;
-    std::size_t after = cursor;
-    while (after < keys.size() && keys[after] <= last) ++after;
-    if (after == cursor) continue;
-    const SlotRange range{grid_.begins_[cursor], grid_.begins_[after]};
+    const std::int64_t* at = &keys[cursors_[i]];
+    while (*at < first) ++at;
+    cursors_[i] = static_cast<std::size_t>(at - keys.data());
+    std::size_t after = cursors_[i];
+    for (int step = 0; step <= 2 * reach_; ++step) after += at[step] <= last ? 1 : 0;
+    if (after == cursors_[i]) continue;
+    const SlotRange range{grid_.begins_[cursors_[i]], grid_.begins_[after]};
     if (ranges.size() > before && ranges.back().end == range.begin)
       ranges.back().end = range.end;
     else

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernel/surface/mesh.h"
@@ -30,7 +32,7 @@ class PointGrid {
   const AlignedColumn& z() const { return z_; }
 
   double cell_side() const { return side_; }
-  int cells() const { return static_cast<int>(keys_.size()); }  ///< occupied ones, in the order of the slots
+  int cells() const { return static_cast<int>(begins_.size()) - 1; }  ///< occupied ones, in the order of the slots
   int begin(int cell) const { return begins_[static_cast<std::size_t>(cell)]; }
   int end(int cell) const { return begins_[static_cast<std::size_t>(cell) + 1]; }
   int cell_of(int slot) const;
@@ -57,7 +59,7 @@ class PointGrid {
   std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
   std::vector<int> rows_;
   AlignedColumn x_, y_, z_;
-  std::vector<std::int64_t> keys_;  // of the occupied cells, ascending
+  std::vector<std::int64_t> keys_;  // of the occupied cells, ascending, and largest ones behind them
   std::vector<int> begins_;
 };
 
@@ -112,6 +114,52 @@ CORRAL_INLINE void visit_within(const PointGrid& grid, const SlotRange* first, c
     int slot = range->begin;
     for (; slot + kLanes <= range->end; slot += kLanes) look(slot, limit);
     if (slot < range->end) look(slot, select(lane < Lanes::fill(range->end - slot), limit, none));
+  }
+}
+
+/// Columns of the slots of some ranges, copied next to each other for loops that run over them often. The first column
+/// goes on with infinity, for at least sixteen numbers.
+template <int kColumns>
+class Surrounding {
+ public:
+  int size() const { return size_; }
+  const double* operator[](int column) const { return columns_[column].data(); }
+
+  template <class Lanes>
+  CORRAL_INLINE void collect(const AlignedColumn* const (&from)[kColumns], const SlotRange* first,
+                             const SlotRange* last) {
+    std::size_t count = 0;
+    for (const SlotRange* range = first; range != last; ++range)
+      count += static_cast<std::size_t>(range->end - range->begin);
+    size_ = static_cast<int>(count);
+    if (columns_[0].size() < count + kFloatLanes)
+      for (AlignedColumn& column : columns_) column.resize(2 * count + kFloatLanes);
+    const double* sources[kColumns];
+    double* targets[kColumns];
+    for (int i = 0; i < kColumns; ++i) sources[i] = from[i]->data(), targets[i] = columns_[i].data();
+    for (const SlotRange* range = first; range != last; ++range) {
+      const int length = range->end - range->begin;
+      for (int at = 0; at < length; at += kLanes)  // what is too many is written over
+        for (int i = 0; i < kColumns; ++i) Lanes::load(sources[i] + range->begin + at).store(targets[i] + at);
+      for (int i = 0; i < kColumns; ++i) targets[i] += length;
+    }
+    std::fill_n(targets[0], kFloatLanes, std::numeric_limits<double>::infinity());
+  }
+
+ private:
+  AlignedColumn columns_[kColumns];
+  int size_ = 0;
+};
+
+/// The same as visit_within for the places in three columns of a surrounding; `slot` counts from its first.
+template <class Lanes, int kColumns, class Visit>
+CORRAL_INLINE void visit_within(const Surrounding<kColumns>& around, double x, double y, double z, double squared,
+                                const Visit& visit) {
+  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z), limit = Lanes::fill(squared);
+  const double *xs = around[0], *ys = around[1], *zs = around[2];
+  for (int i = 0; i < around.size(); i += kLanes) {
+    const Lanes dx = Lanes::load(xs + i) - cx, dy = Lanes::load(ys + i) - cy, dz = Lanes::load(zs + i) - cz;
+    visit(dx * dx + dy * dy + dz * dz <= limit, dx, dy, dz, i);
   }
 }
 

@@ -18,15 +18,14 @@ bool is_duplicate(const PointGrid& grid, std::size_t slot) {
          grid.z()[slot] == grid.z()[slot - 1];
 }
 
-/// Squared distance of a slot to the nearest point in another place, among some ranges; infinite if there is none.
+/// Squared distance of a slot to the nearest point in another place around it; infinite if there is none.
 template <class Lanes>
-CORRAL_INLINE double nearest_other(const PointGrid& grid, const SlotRange* first, const SlotRange* last,
-                                   std::size_t slot) {
+CORRAL_INLINE double nearest_other(const PointGrid& grid, const Surrounding<3>& around, std::size_t slot) {
   const Lanes none = Lanes::fill(kInfinity), zero = Lanes::fill(0);
   Lanes nearest = none;
-  visit_within<Lanes>(grid, first, last, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
-                      [&](auto inside, Lanes dx, Lanes dy, Lanes dz, std::size_t) {
-                        const Lanes squared = select(inside, dx * dx + dy * dy + dz * dz, none);
+  visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
+                      [&](auto, Lanes dx, Lanes dy, Lanes dz, int) {
+                        const Lanes squared = dx * dx + dy * dy + dz * dz;
                         nearest = smaller(nearest, select(zero < squared, squared, none));
                       });
   return smallest(nearest);
@@ -47,12 +46,15 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
   constexpr double kOccupancy = 5;  // the nearest vertex is then nearly always in the next cells around
   const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
   AlignedColumn squares(grid.x().size(), 0.0);
-  const auto left = NearestSweep(grid).run(
-      parallel, [&](int slot, const SlotRange* first, const SlotRange* last, double sure_squared, auto kind) {
-        const auto i = static_cast<std::size_t>(slot);
-        squares[i] = nearest_other<typename decltype(kind)::Lanes>(grid, first, last, i);
-        return squares[i] <= sure_squared;
-      });
+  const auto left = NearestSweep(grid).run(parallel, [&](int slot, const SlotRange* first, const SlotRange* last,
+                                                         bool are_new, double sure_squared, auto kind) {
+    using Lanes = typename decltype(kind)::Lanes;
+    thread_local Surrounding<3> around;
+    if (are_new) around.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
+    const auto i = static_cast<std::size_t>(slot);
+    squares[i] = nearest_other<Lanes>(grid, around, i);
+    return squares[i] <= sure_squared;
+  });
   if (!left.empty()) {
     const PointIndex index(vertices);
     for (const int slot : left) {

@@ -174,5 +174,50 @@ TEST(AlignedColumn, StartsAtACacheLine) {
   }
 }
 
+TEST(Lanes, BitsSayWhereAComparisonIsTrue) {
+  const float nan = std::nanf("");
+  const float a[kFloatLanes] = {1, 2, 3, 4, -1, -0.0F, nan, 7, 8, nan, 0, 1, 2, 3, 4, 5},
+              b[kFloatLanes] = {1, 3, 2, 4, -2, 0.0F, 1, nan, 9, nan, 1, 0, 2, 4, 3, 5};
+  unsigned less = 0, less_equal = 0, equal = 0, lanes_less = 0;
+  for (unsigned i = 0; i < kFloatLanes; ++i)
+    less |= unsigned{a[i] < b[i]} << i, less_equal |= unsigned{a[i] <= b[i]} << i, equal |= unsigned{a[i] == b[i]} << i;
+  for (unsigned i = 0; i < kLanes; ++i) lanes_less |= unsigned{kOdd.values[i] < kOther.values[i]} << i;
+  for (const VectorLevel level : available_levels()) {
+    const ForcedLevel forced(level);
+    vectorized([&](auto kind) {
+      using Floats = typename decltype(kind)::Floats;
+      using Lanes = typename decltype(kind)::Lanes;
+      const Floats x = Floats::load(a), y = Floats::load(b);
+      EXPECT_EQ(bits(x < y), less);
+      EXPECT_EQ(bits(x <= y), less_equal);
+      EXPECT_EQ(bits(x == y), equal);
+      EXPECT_EQ(bits(Lanes::load(kOdd.values) < Lanes::load(kOther.values)), lanes_less);
+      EXPECT_EQ(bits(Lanes::load(kA.values) <= Lanes::load(kA.values)), 0xffU);
+    });
+  }
+}
+
+TEST(Lanes, PackedNumbersFollowEachOther) {
+  float numbers[kFloatLanes];
+  for (int i = 0; i < kFloatLanes; ++i) numbers[i] = static_cast<float>(i) - 3.5F;
+  for (const VectorLevel level : available_levels()) {
+    const ForcedLevel forced(level);
+    for (const unsigned which : {0U, 1U, 0x8000U, 0xffffU, 0x00ffU, 0xff00U, 0x1248U, 0xa5a5U}) {
+      float packed[kFloatLanes + 1] = {};
+      packed[kFloatLanes] = 77;
+      vectorized([&](auto kind) {
+        using Floats = typename decltype(kind)::Floats;
+        Floats::load(numbers).pack(which, packed);
+      });
+      int next = 0;
+      for (unsigned i = 0; i < kFloatLanes; ++i)
+        if ((which >> i & 1) != 0) {
+          EXPECT_EQ(packed[next++], numbers[i]) << which;
+        }
+      EXPECT_EQ(packed[kFloatLanes], 77);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace corral

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "kernel/error.h"
+#include "kernel/random.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/resolution.h"
+#include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
 #include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
@@ -96,6 +98,31 @@ TEST(NearestSweep, ThousandsInOnePlaceCountOnce) {
     const Points normals = estimate_normals({points, Triangles(0, 3)});
     EXPECT_TRUE(normals.row(5).isZero(0)) << "its nearest are its copies";
     for (int row = 0; row < 700; row += 50) expect_fits(points, row, 20, normals.row(row));
+  }
+}
+
+/// Middles, each first of its thirty points about as far away, which differ by a share of that.
+Points shells(int count, double spread) {
+  RandomStream random(11);
+  Points points(31 * count, 3);
+  for (int row = 0; row < points.rows(); ++row) {
+    const Eigen::RowVector3d middle(9.0 * (row / 31), 0.3 * (row / 31), 5);
+    const double distance = row % 31 == 0 ? 0 : 1 + spread * random.uniform(0, 1);
+    points.row(row) = middle + distance * random.direction().transpose();
+  }
+  return points;
+}
+
+TEST(NearestSweep, DecidesWhatFloatsCannotTellApart) {
+  constexpr int kShells = 40;
+  for (const double spread : {1e-12, 1e-9, 1e-7, 3e-7, 1e-6, 1e-5, 1e-3}) {
+    SCOPED_TRACE(spread);
+    const Points points = shells(kShells, spread);
+    for (const VectorLevel level : testing::available_levels()) {
+      const testing::ForcedLevel forced(level);
+      const Points normals = estimate_normals({points, Triangles(0, 3)});
+      for (int row = 0; row < points.rows(); row += 31) expect_fits(points, row, 20, normals.row(row));
+    }
   }
 }
 
