@@ -124,6 +124,7 @@ class Alive {
     entries_ = Eigen::VectorXd(entries_(nodes));
     degrees_ = Eigen::VectorXd(degrees_(nodes));
     takes_part_ = Eigen::VectorXd::Ones(graph_->size());
+    sum_of_squares_ = graph_->sum_of_squares();  // what was subtracted since left rounding behind
   }
 
   std::unique_ptr<GraphMatrix> graph_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/spatial_order.h"
 
@@ -215,6 +216,7 @@ void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t la
       const Lanes reach = smaller(farthest, (Lanes::load(&f.second[place]) + moved) * Lanes::fill(1 + kRounding));
       Search<Lanes> search{x, y, z, select(zero < is_unsure, reach * reach, Lanes::fill(-1)), none, none, none, none};
       search.template run<false>(tree_, low, high);
+      // Ties are rare, but where points are doubled; to heed them always would double the time of the loop.
       if (bits(search.second <= smaller(search.best, most)) != 0) search.template run<true>(tree_, low, high);
 
       const auto keep = [&](const Lanes& found, AlignedColumn& column) {
