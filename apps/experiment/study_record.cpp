@@ -78,14 +78,14 @@ bool parse_cell(const std::string& cell, std::optional<Value>& value) {
   return true;
 }
 
-/// Shares are from 0 to 1, and nothing else that is measured is below zero; the value is that of any attribute.
+/// Shares of a whole are from 0 to 1 (ADD is a length in diameters), and nothing else that is measured is below zero; the
+/// value is that of any attribute.
 template <class Value>
 bool is_in_range(const std::string&, const Value&) {
   return true;
 }
 bool is_in_range(const std::string& name, const std::optional<double>& value) {
-  static const std::set<std::string> shares = {
-      "precision", "recall", "f1", "frame_share", "initial_add_share", "refined_add_share", "dense_add_share"};
+  static const std::set<std::string> shares = {"precision", "recall", "f1", "frame_share"};
   return !value || name == "value" || (*value >= 0 && (shares.count(name) == 0 || *value <= 1));
 }
 

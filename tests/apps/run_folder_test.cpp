@@ -72,9 +72,11 @@ TEST(StudyRecord, SharesAreUpToOneAndErrorsNotBelowZero) {
   EXPECT_EQ(complaint(record), "");
   record.f1 = 1e308;
   EXPECT_THAT(complaint(record), HasSubstr("f1 is '1e+308'"));
-  record.f1 = 0, record.dense.add_share = 1.5;
-  EXPECT_THAT(complaint(record), HasSubstr("dense_add_share"));
-  record.dense.add_share.reset(), record.time_ms = -1;
+  record.f1 = 0, record.frame_share = 1.5;
+  EXPECT_THAT(complaint(record), HasSubstr("frame_share is '1.5'"));
+  record.frame_share.reset(), record.initial.add_share = 1.06;
+  EXPECT_EQ(complaint(record), "") << "ADD is a length in diameters: a pose may be farther off than one";
+  record.time_ms = -1;
   EXPECT_THAT(complaint(record), HasSubstr("time_ms"));
 }
 
