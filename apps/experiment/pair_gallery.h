@@ -9,7 +9,7 @@
 
 namespace corral {
 
-/// A pair of a run with the record whose selections are to be looked at.
+/// A pair of a run, which must outlive this, with the record whose selections are to be looked at.
 struct GalleryPair {
   const RunFolder* run = nullptr;
   const StudyRecord* record = nullptr;  ///< of the first method

@@ -181,9 +181,10 @@ TEST(Gallery, TakesThePairInTheMiddleOfEachDataSet) {
     add("b3r", pair, count);
   add("u3m", "a", 3);
   run.records.push_back(record_of("no selection", "ss", {}));
+  const std::vector<RunFolder> runs = {run};
   const auto names = [&](const std::vector<std::string>& asked) {
     std::vector<std::string> found;
-    for (const GalleryPair& pair : choose_gallery({run}, asked)) found.push_back(pair.name());
+    for (const GalleryPair& pair : choose_gallery(runs, asked)) found.push_back(pair.name());
     return found;
   };
   EXPECT_THAT(names({}), ::testing::ElementsAre("b3r/c", "u3m/a"));  // of shares 1, 5, 7, 9 the lower middle
