@@ -27,7 +27,7 @@ struct Box {
           const Lanes place = Lanes::load(column + row);
           least = smaller(least, place), most = larger(most, place);
         }
-        low(axis) = smallest(least), high(axis) = -smallest(Lanes::fill(0) - most);
+        low(axis) = smallest(least), high(axis) = largest(most);
         for (Eigen::Index row = whole; row < points.rows(); ++row) {
           low(axis) = std::min(low(axis), column[row]);
           high(axis) = std::max(high(axis), column[row]);

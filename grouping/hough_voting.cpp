@@ -103,7 +103,6 @@ Box bounding_box(const Votes& votes) {
   Box box;
   vectorized([&](auto kind) {
     using Lanes = typename decltype(kind)::Lanes;
-    const Lanes zero = Lanes::fill(0);
     for (int axis = 0; axis < 3; ++axis) {
       const AlignedColumn& column = votes.at[axis];
       Lanes low = Lanes::load(column.data()), high = low;
@@ -111,7 +110,7 @@ Box bounding_box(const Votes& votes) {
         const Lanes place = Lanes::load(column.data() + i);
         low = smaller(low, place), high = larger(high, place);
       }
-      box.low(axis) = smallest(low), box.high(axis) = -smallest(zero - high);
+      box.low(axis) = smallest(low), box.high(axis) = largest(high);
     }
   });
   return box;

@@ -10,9 +10,10 @@
 namespace corral {
 namespace {
 
-constexpr std::ptrdiff_t kFew = 16;     // items that are not worth a pivot
-constexpr std::ptrdiff_t kSamples = 9;  // of which one becomes the pivot
-constexpr int kMostPivots = 40;         // more are bad luck
+constexpr std::ptrdiff_t kBranches = 8;  // of a node, and points of a full leaf
+constexpr std::ptrdiff_t kFew = 16;      // items that are not worth a pivot
+constexpr std::ptrdiff_t kSamples = 9;   // of which one becomes the pivot
+constexpr int kMostPivots = 40;          // more are bad luck
 
 struct Item {
   double place[3];
@@ -81,8 +82,8 @@ void halve(Item* first, Item* last, std::ptrdiff_t share, const Part& part) {
 
 void divide(Item* first, Item* last, std::ptrdiff_t share) {
   while (last - first <= share) {
-    if (share <= kSpatialBranches) return;
-    share /= kSpatialBranches;
+    if (share <= kBranches) return;
+    share /= kBranches;
   }
   halve(first, last, share, [share](Item* begin, Item* end) { divide(begin, end, share); });
 }
@@ -107,8 +108,8 @@ Indices spatial_order(const Points& points, const ParallelFor& parallel) {
     else
       rest.push_back(static_cast<int>(row));
   }
-  std::ptrdiff_t share = kSpatialBranches;
-  while (share * kSpatialBranches < static_cast<std::ptrdiff_t>(items.size())) share *= kSpatialBranches;
+  std::ptrdiff_t share = kBranches;
+  while (share * kBranches < static_cast<std::ptrdiff_t>(items.size())) share *= kBranches;
   std::vector<std::pair<Item*, Item*>> parts;  // of the root
   divide_into(parts, items.data(), items.data() + items.size(), share);
   parallel(static_cast<int>(parts.size()), [&](int i) {

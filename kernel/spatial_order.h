@@ -6,9 +6,6 @@
 
 namespace corral {
 
-/// Branches of the tree whose leaves spatial_order lists, and points of a full leaf.
-constexpr int kSpatialBranches = 8;
-
 /// The rows of points (N x 3) as the leaves of a balanced tree: each eight in a row lie in one place, so do eight such
 /// eights, and so on. Every part is cut across the longest side of its box. Rows that are not finite come last.
 ///

@@ -18,12 +18,12 @@ using NearestPairs = std::function<const PointPairs&(const Points& queries, doub
 
 /// Two surfaces as points. What is referred to must outlive the call.
 struct SurfacePair {
-  const Points& source;          ///< N x 3, mesh units
-  const Points& target;          ///< V x 3
-  const Points& target_normals;  ///< V x 3, unit length; zero or NaN: none, and nothing is paired with that point
-  double resolution;             ///< mesh units per pr
-  NearestPairs pair;             ///< with the target points
-  ParallelFor parallel = one_by_one;
+  const Points& source;               ///< N x 3, mesh units
+  const Points& target;               ///< V x 3
+  const Points& target_normals;       ///< V x 3, unit length; zero or NaN: none, and nothing is paired with that point
+  double resolution;                  ///< mesh units per pr
+  NearestPairs pair;                  ///< with the target points
+  ParallelFor parallel = one_by_one;  ///< for the sums; results do not depend on it
 };
 
 enum class SurfaceResidual {

@@ -56,7 +56,7 @@ class HarrisOperator {
   template <class Lanes>
   CORRAL_INLINE void fit(const Block& block) {
     std::int64_t neighbors = 0;
-    Surrounding<3> places;
+    PackedSlots<3> places;
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
       places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
@@ -79,7 +79,7 @@ class HarrisOperator {
 
   template <class Lanes>
   CORRAL_INLINE void respond(const Block& block) {
-    Surrounding<6> places;  // and normals
+    PackedSlots<6> places;  // and normals
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
       places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
                             around_.end(cell));

@@ -15,7 +15,7 @@ namespace {
 /// The points around a cell, next to each other: in double, and in floats relative to one of them in sides of a cell.
 class Crowd {
  public:
-  Surrounding<3> places;
+  PackedSlots<3> places;
   FloatColumn near[3];  ///< what follows up to a multiple of sixteen is infinitely far away
 
   int size() const { return places.size(); }
@@ -54,7 +54,7 @@ class Crowd {
     }
     std::fill_n(&near[0][static_cast<std::size_t>(size())], room - static_cast<std::size_t>(size()),
                 std::numeric_limits<float>::infinity());
-    extent_ = -smallest(zero - extent);
+    extent_ = largest(extent);
   }
 
  private:

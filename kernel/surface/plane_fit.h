@@ -76,7 +76,7 @@ struct PlaneFits {
 
   /// The moments of the points around a slot within a squared distance; returns how many there are.
   template <class Lanes>
-  CORRAL_INLINE int fit(std::size_t slot, const PointGrid& grid, const Surrounding<3>& around, double squared) {
+  CORRAL_INLINE int fit(std::size_t slot, const PointGrid& grid, const PackedSlots<3>& around, double squared) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;

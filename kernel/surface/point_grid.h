@@ -96,31 +96,10 @@ class CellNeighborhoods {
   std::vector<std::size_t> begins_;
 };
 
-/// Calls visit(inside, dx, dy, dz, slot) for eight slots after the other of some ranges: `inside` is true on the lanes that
-/// lie within a squared distance of (x, y, z), d their offsets from it, `slot` the first of the eight.
-template <class Lanes, class Visit>
-CORRAL_INLINE void visit_within(const PointGrid& grid, const SlotRange* first, const SlotRange* last, double x,
-                                double y, double z, double squared, const Visit& visit) {
-  static constexpr double kLane[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
-  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z), limit = Lanes::fill(squared),
-              lane = Lanes::load(kLane), none = Lanes::fill(-1);
-  const auto look = [&](int slot, const Lanes& limit_here) {
-    const auto at = static_cast<std::size_t>(slot);
-    const Lanes dx = Lanes::load(&grid.x()[at]) - cx, dy = Lanes::load(&grid.y()[at]) - cy,
-                dz = Lanes::load(&grid.z()[at]) - cz;
-    visit(dx * dx + dy * dy + dz * dz <= limit_here, dx, dy, dz, at);
-  };
-  for (const SlotRange* range = first; range != last; ++range) {
-    int slot = range->begin;
-    for (; slot + kLanes <= range->end; slot += kLanes) look(slot, limit);
-    if (slot < range->end) look(slot, select(lane < Lanes::fill(range->end - slot), limit, none));
-  }
-}
-
 /// Columns of the slots of some ranges, copied next to each other for loops that run over them often. The first column
 /// goes on with infinity, for at least sixteen numbers.
 template <int kColumns>
-class Surrounding {
+class PackedSlots {
  public:
   int size() const { return size_; }
   const double* operator[](int column) const { return columns_[column].data(); }
@@ -151,13 +130,16 @@ class Surrounding {
   int size_ = 0;
 };
 
-/// The same as visit_within for the places in three columns of a surrounding; `slot` counts from its first.
+/// Calls visit(inside, dx, dy, dz, i) for eight places after the other, the first three columns of packed slots: `inside` is
+/// true on the lanes that lie within a squared distance of (x, y, z), d their offsets from it, i the first of the eight. What
+/// is infinitely far, as the padding is, lies within no distance.
 template <class Lanes, int kColumns, class Visit>
-CORRAL_INLINE void visit_within(const Surrounding<kColumns>& around, double x, double y, double z, double squared,
+CORRAL_INLINE void visit_within(const PackedSlots<kColumns>& packed, double x, double y, double z, double squared,
                                 const Visit& visit) {
-  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z), limit = Lanes::fill(squared);
-  const double *xs = around[0], *ys = around[1], *zs = around[2];
-  for (int i = 0; i < around.size(); i += kLanes) {
+  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z),
+              limit = Lanes::fill(std::min(squared, std::numeric_limits<double>::max()));
+  const double *xs = packed[0], *ys = packed[1], *zs = packed[2];
+  for (int i = 0; i < packed.size(); i += kLanes) {
     const Lanes dx = Lanes::load(xs + i) - cx, dy = Lanes::load(ys + i) - cy, dz = Lanes::load(zs + i) - cz;
     visit(dx * dx + dy * dy + dz * dz <= limit, dx, dy, dz, i);
   }

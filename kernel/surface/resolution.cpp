@@ -20,7 +20,7 @@ bool is_duplicate(const PointGrid& grid, std::size_t slot) {
 
 /// Squared distance of a slot to the nearest point in another place around it; infinite if there is none.
 template <class Lanes>
-CORRAL_INLINE double nearest_other(const PointGrid& grid, const Surrounding<3>& around, std::size_t slot) {
+CORRAL_INLINE double nearest_other(const PointGrid& grid, const PackedSlots<3>& around, std::size_t slot) {
   const Lanes none = Lanes::fill(kInfinity), zero = Lanes::fill(0);
   Lanes nearest = none;
   visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
@@ -49,7 +49,7 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
   const auto left = NearestSweep(grid).run(parallel, [&](int slot, const SlotRange* first, const SlotRange* last,
                                                          bool are_new, double sure_squared, auto kind) {
     using Lanes = typename decltype(kind)::Lanes;
-    thread_local Surrounding<3> around;
+    thread_local PackedSlots<3> around;
     if (are_new) around.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
     const auto i = static_cast<std::size_t>(slot);
     squares[i] = nearest_other<Lanes>(grid, around, i);

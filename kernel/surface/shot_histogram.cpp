@@ -155,8 +155,8 @@ class Voter {
   bool is_product_;
 };
 
-constexpr std::size_t kCopies =
-    4;  // of the histogram: vertices side by side fall into the same bins, and need not wait
+/// Of the histogram: vertices side by side fall into the same bins, and need not wait for each other.
+constexpr std::size_t kCopies = 4;
 struct Histograms {
   alignas(64) double bins[kCopies][kPlaces] = {};
 };

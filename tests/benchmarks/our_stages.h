@@ -25,13 +25,16 @@ inline double pairs_by_grid(const Mesh& mesh, double radius) {
   vectorized([&](auto kind) {
     using Lanes = typename decltype(kind)::Lanes;
     Lanes count = Lanes::fill(0);
-    for (int cell = 0; cell < grid.cells(); ++cell)
+    PackedSlots<3> places;
+    for (int cell = 0; cell < grid.cells(); ++cell) {
+      places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, around.begin(cell), around.end(cell));
       for (auto slot = static_cast<std::size_t>(grid.begin(cell)); slot < static_cast<std::size_t>(grid.end(cell));
            ++slot)
-        visit_within<Lanes>(grid, around.begin(cell), around.end(cell), grid.x()[slot], grid.y()[slot], grid.z()[slot],
-                            radius * radius, [&](auto inside, Lanes, Lanes, Lanes, std::size_t) {
+        visit_within<Lanes>(places, grid.x()[slot], grid.y()[slot], grid.z()[slot], radius * radius,
+                            [&](auto inside, Lanes, Lanes, Lanes, int) {
                               count = count + select(inside, Lanes::fill(1), Lanes::fill(0));
                             });
+    }
     pairs = sum(count);
   });
   return pairs;

@@ -31,18 +31,23 @@ Eigen::Vector3d place(const PointGrid& grid, int slot) {
 /// The rows that lanes see inside, ascending.
 Indices rows_within(const PointGrid& grid, const SlotRange* first, const SlotRange* last, const Eigen::Vector3d& center,
                     double radius) {
-  Indices rows;
+  Indices rows, slots;
+  for (const SlotRange* range = first; range != last; ++range)
+    for (int slot = range->begin; slot < range->end; ++slot) slots.push_back(slot);
   vectorized([&](auto kind) {
     using Lanes = typename decltype(kind)::Lanes;
-    visit_within<Lanes>(grid, first, last, center.x(), center.y(), center.z(), radius * radius,
-                        [&](auto inside, Lanes dx, Lanes, Lanes, std::size_t slot) {
-                          double is_inside[kLanes], x[kLanes];
-                          select(inside, Lanes::fill(1), Lanes::fill(0)).store(is_inside);
+    PackedSlots<3> places;
+    places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
+    EXPECT_EQ(places.size(), static_cast<int>(slots.size()));
+    visit_within<Lanes>(places, center.x(), center.y(), center.z(), radius * radius,
+                        [&](auto inside, Lanes dx, Lanes, Lanes, int i) {
+                          double x[kLanes];
                           dx.store(x);
-                          for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                            if (is_inside[lane] == 0) continue;
-                            rows.push_back(grid.row(static_cast<int>(slot + lane)));
-                            EXPECT_EQ(x[lane], grid.x()[slot + lane] - center.x());
+                          for (unsigned left = bits(inside); left != 0; left &= left - 1) {
+                            const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+                            const int slot = slots.at(static_cast<std::size_t>(i) + lane);
+                            rows.push_back(grid.row(slot));
+                            EXPECT_EQ(x[lane], grid.x()[static_cast<std::size_t>(slot)] - center.x());
                           }
                         });
   });

@@ -133,13 +133,10 @@ void compare_on(const std::string& folder, bool each) {
 
 int main(int argc, char** argv) {
   try {
-    bool each = false;
-    for (int i = 1; i < argc; ++i)
-      if (std::strcmp(argv[i], "--each") == 0)
-        each = true;
-      else
-        corral::peers::compare_on(argv[i], each);
-    if (argc < 2) return std::fprintf(stderr, "usage: icp_pairs [--each] DATASET...\n"), 2;
+    const bool each = argc > 1 && std::strcmp(argv[1], "--each") == 0;
+    const int first = each ? 2 : 1;
+    if (argc <= first) return std::fprintf(stderr, "usage: icp_pairs [--each] DATASET...\n"), 2;
+    for (int i = first; i < argc; ++i) corral::peers::compare_on(argv[i], each);
   } catch (const std::exception& error) {
     return std::fprintf(stderr, "icp_pairs: %s\n", error.what()), 3;
   }
