@@ -89,9 +89,35 @@ float FilterTable::hide(int row) { return std::exchange(source_[0][static_cast<s
 ConsistencyFilter::ConsistencyFilter(const FilterTable& table, double tolerance) {
   const double farthest = 4;  // no distance in the table reaches it: a larger tolerance says no more
   const double t = std::min(tolerance / table.unit(), farthest) * (1 + kSlack) + 2 * kFilterDistanceError;
-  square = static_cast<float>(t * t);
-  fourth = static_cast<float>(t * t * t * t);
-  factor = static_cast<float>(2 * t * t * (1 + kSlack));
+  const auto scale = static_cast<float>(0.5 / t);
+  const auto end = static_cast<std::size_t>(padded(table.rows(), kGroup));
+  double farthest_square = 0;
+  const auto scaled = [&](std::array<FloatColumn, 3>& columns, FloatColumn& squares, auto from) {
+    using Array = Eigen::Map<Eigen::ArrayXf>;
+    squares.assign(end, kNothing);
+    Array sum(squares.data(), table.rows());
+    sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      FloatColumn& column = columns[static_cast<std::size_t>(axis)];
+      column.assign(end, kNothing);
+      Array places(column.data(), table.rows());
+      places = Eigen::Map<const Eigen::ArrayXf>(from(axis), table.rows()) * scale;
+      sum += places.square();
+    }
+    if (table.rows() > 0) farthest_square = std::max(farthest_square, static_cast<double>(sum.maxCoeff()));
+  };
+  scaled(source_, source_square_, [&](int axis) { return table.source(axis); });
+  scaled(target_, target_square_, [&](int axis) { return table.target(axis); });
+  const double error = 96 * kUnitRoundoff * (farthest_square + 1);
+  const double surplus = 0.0625 + (error * (4 * std::sqrt(farthest_square) + 3) + error * error) * (1 + kSlack);
+  rows_.resize(end);
+  for (std::size_t i = 0; i < end; ++i) {
+    Row& row = rows_[i];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      row.source[axis] = -2 * source_[axis][i], row.target[axis] = -2 * target_[axis][i];
+    row.offset = target_square_[i] - source_square_[i] - 0.25f;
+    row.surplus = source_square_[i] + static_cast<float>(surplus);
+  }
 }
 
 SimilarityFilter::SimilarityFilter(double similarity) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "kernel/correspondence_set.h"
 #include "kernel/rigid_transform.h"
@@ -64,15 +65,42 @@ class FilterTable {
   std::array<FloatColumn, 3> source_, target_;
 };
 
-/// | d - d' | < tolerance for the distances of two rows on either side.
+/// | d - d' | < tolerance for the distances of two rows on either side, in a unit of twice T: the tolerance, widened by what
+/// the points are off. In this unit, for the true lengths x, y of the floats, |x - y| < 1/2 implies F^2 <= x^2 + 1/16 with
+/// F = y^2 - x^2 - 1/4: F <= x because y^2 < (x + 1/2)^2, and -F <= x because y^2 > (x - 1/2)^2, unless x < 1/2; then
+/// -F <= x^2 + 1/4, whose square is x^2 + (x^2 - 1/4)^2.
 ///
-/// For lengths x, y of floats, |x - y| < T means (a - b)^2 + T^4 < 2 T^2 (a + b) with a = x^2, b = y^2, unless x + y < T;
-/// with max(a + b, T^2) for a + b it holds there too. T is the tolerance and twice the bound above.
-struct ConsistencyFilter {
+/// Squared distances come from scalar products, x^2 = |p|^2 + |q|^2 - 2 pq, half the operations of differences. With no
+/// point farther than R from the middle, a coordinate is rounded twice, by at most 2 u R in all, and x^2 is off by 16 u R^2
+/// for it. Its three products and sums round numbers of at most 3 R^2: at most 13 u R^2. F holds two such squares and four
+/// more roundings of at most 8 R^2, so that it is off by less than E = 96 u (R^2 + 1), and F^2 by 2 E (2 R + 1) + E^2. One E
+/// more is for x^2 and for the roundings of the test.
+class ConsistencyFilter {
+ public:
   ConsistencyFilter(const FilterTable& table, double tolerance);
-  float square;  ///< T^2
-  float fourth;  ///< T^4
-  float factor;  ///< 2 T^2, with the rounding of the test
+
+  /// Bytes for so many rows.
+  static double memory(int rows) { return 16.0 * sizeof(float) * padded(rows, kGroup); }
+
+  /// What a row brings to its comparisons with others.
+  struct Row {
+    float source[3], target[3];  ///< times -2
+    float offset;                ///< of F: |q|^2 - |p|^2 - 1/4
+    float surplus;               ///< |p|^2 + 1/16 and all errors: possible if F^2 - surplus <= x^2 - |p|^2
+  };
+
+  static constexpr int kGroup = 2 * kFloatLanes;  ///< rows that are compared together with each other row
+  int padded_rows() const { return static_cast<int>(rows_.size()); }
+  const Row& row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  const float* source(int axis) const { return source_[static_cast<std::size_t>(axis)].data(); }
+  const float* target(int axis) const { return target_[static_cast<std::size_t>(axis)].data(); }
+  const float* source_square() const { return source_square_.data(); }
+  const float* target_square() const { return target_square_.data(); }
+
+ private:
+  std::array<FloatColumn, 3> source_, target_;
+  FloatColumn source_square_, target_square_;
+  std::vector<Row> rows_;
 };
 
 /// min(d, d') / max(d, d') >= similarity, or > similarity: which of them is for the double to say.

@@ -29,6 +29,9 @@ struct Columns {
   explicit Columns(const FilterTable& table)
       : source{table.source(0), table.source(1), table.source(2)},
         target{table.target(0), table.target(1), table.target(2)} {}
+  explicit Columns(const ConsistencyFilter& filter)
+      : source{filter.source(0), filter.source(1), filter.source(2)},
+        target{filter.target(0), filter.target(1), filter.target(2)} {}
   const float *source[3], *target[3];
 };
 
@@ -46,64 +49,50 @@ CORRAL_INLINE int total(Floats counts) {
   return static_cast<int>((quarters[0] + quarters[1]) + (quarters[2] + quarters[3]));
 }
 
+/// Rows whose comparisons with one other row are made together.
 template <class Floats>
-struct Consistency {
-  Floats square, fourth, factor, one;
-  explicit Consistency(const ConsistencyFilter& filter)
-      : square(Floats::fill(filter.square)),
-        fourth(Floats::fill(filter.fourth)),
-        factor(Floats::fill(filter.factor)),
-        one(Floats::fill(1)) {}
+struct ConsistencyLanes {
+  Point<Floats> p, q;
+  Floats p_square, q_square;
 
-  CORRAL_INLINE auto possible(const Point<Floats>& p, const Point<Floats>& q, const Point<Floats>& other_p,
-                              const Point<Floats>& other_q) const {
-    const Floats a = squared_distance(p, other_p), b = squared_distance(q, other_q);
-    const Floats difference = a - b;
-    return difference * difference + fourth <= factor * larger(a + b, square);  // NaN stays NaN in `larger`
+  static CORRAL_INLINE ConsistencyLanes load(const ConsistencyFilter& filter, const Columns& columns, int first) {
+    return {Point<Floats>::load(columns.source, first), Point<Floats>::load(columns.target, first),
+            Floats::load(filter.source_square() + first), Floats::load(filter.target_square() + first)};
+  }
+
+  CORRAL_INLINE auto possible(const ConsistencyFilter::Row& row) const {
+    const auto all = [](float value) { return Floats::fill(value); };
+    const auto &s = row.source, &t = row.target;
+    const Floats a = all(s[0]) * p.x + (all(s[1]) * p.y + (all(s[2]) * p.z + p_square));
+    const Floats b = all(t[0]) * q.x + (all(t[1]) * q.y + (all(t[2]) * q.z + q_square));
+    const Floats difference = (b + all(row.offset)) - a;
+    return difference * difference - all(row.surplus) <= a;
   }
 };
 
 }  // namespace
 
-void count_consistent(const FilterTable& table, const ConsistencyFilter& filter, float* counts) {
-  const Columns columns(table);
-  const int end = table.padded_rows();
-  for (int row = 0; row < end; ++row) counts[row] = 0;
+void count_consistent(const ConsistencyFilter& filter, int* counts) {
+  const Columns columns(filter);
+  constexpr int kGroup = ConsistencyFilter::kGroup;
   vectorized([&](auto kind) {
     using Floats = typename decltype(kind)::Floats;
-    constexpr int kTile = 4;  // rows whose counts stay in registers
-    const Consistency<Floats> test(filter);
-    for (int first = 0; first < end; first += kFloatLanes) {
-      // Every pair once: the lanes of this group against themselves ...
-      const auto p = Point<Floats>::load(columns.source, first), q = Point<Floats>::load(columns.target, first);
-      Floats inside = Floats::load(counts + first);
-      for (int row = first; row < first + kFloatLanes; ++row)
-        inside = counted(
-            test.possible(p, q, Point<Floats>::fill(columns.source, row), Point<Floats>::fill(columns.target, row)),
-            inside, test.one);
-      inside.store(counts + first);
-      // ... and its rows against the lanes of all later groups, counted on both sides.
-      for (int tile = first; tile < first + kFloatLanes; tile += kTile) {
-        Point<Floats> rows_p[kTile], rows_q[kTile];
-        Floats of_row[kTile];
-        for (int i = 0; i < kTile; ++i) {
-          rows_p[i] = Point<Floats>::fill(columns.source, tile + i);
-          rows_q[i] = Point<Floats>::fill(columns.target, tile + i);
-          of_row[i] = Floats::fill(0);
-        }
-        for (int lane = first + kFloatLanes; lane < end; lane += kFloatLanes) {
-          const auto lane_p = Point<Floats>::load(columns.source, lane);
-          const auto lane_q = Point<Floats>::load(columns.target, lane);
-          Floats of_lanes = Floats::load(counts + lane);
-          for (int i = 0; i < kTile; ++i) {
-            const auto possible = test.possible(lane_p, lane_q, rows_p[i], rows_q[i]);
-            of_lanes = counted(possible, of_lanes, test.one);
-            of_row[i] = counted(possible, of_row[i], test.one);
-          }
-          of_lanes.store(counts + lane);
-        }
-        for (int i = 0; i < kTile; ++i) counts[tile + i] += static_cast<float>(total(of_row[i]));
+    const Floats one = Floats::fill(1);
+    for (int first = 0; first < filter.padded_rows(); first += kGroup) {
+      const auto low = ConsistencyLanes<Floats>::load(filter, columns, first),
+                 high = ConsistencyLanes<Floats>::load(filter, columns, first + kFloatLanes);
+      Floats of_low = Floats::fill(0), of_high = of_low;
+      // Every pair once: a group against all rows before it, counted on both sides, and against itself.
+      for (int i = 0; i < first; ++i) {
+        const auto in_low = low.possible(filter.row(i)), in_high = high.possible(filter.row(i));
+        of_low = counted(in_low, of_low, one), of_high = counted(in_high, of_high, one);
+        counts[i] += __builtin_popcount(bits(in_low) | bits(in_high) << kFloatLanes);
       }
+      for (int i = first; i < first + kGroup; ++i) {
+        of_low = counted(low.possible(filter.row(i)), of_low, one);
+        of_high = counted(high.possible(filter.row(i)), of_high, one);
+      }
+      of_low.store(counts + first), of_high.store(counts + first + kFloatLanes);
     }
   });
 }

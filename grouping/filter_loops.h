@@ -10,9 +10,8 @@ namespace corral {
 // The loops behind the filters: float arithmetic on whole columns, for the vector level of the machine. Their sums may
 // differ from level to level by what the filters allow for; nothing else may depend on them. Only sources include this.
 
-/// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included. Whole numbers, exact
-/// below 2^24 rows.
-void count_consistent(const FilterTable& table, const ConsistencyFilter& filter, float* counts);
+/// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included.
+void count_consistent(const ConsistencyFilter& filter, int* counts);
 
 /// How many poses are looked at together.
 constexpr int kPoseTile = 4;

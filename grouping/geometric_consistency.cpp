@@ -54,10 +54,10 @@ class ConsistencyTest {
 /// Floats count, for every seed, the matches that possibly agree with it. The largest count is replaced by the exact one
 /// until the largest is exact: then no other can be larger, nor as large in an earlier row.
 Indices largest_star(const CorrespondenceSet& matches, double tolerance) {
-  const FilterTable table(matches);
+  const ConsistencyFilter filter(FilterTable(matches), tolerance);
   const ConsistencyTest consistent(matches, tolerance);
-  FloatColumn counts(static_cast<std::size_t>(table.padded_rows()));
-  count_consistent(table, {table, tolerance}, counts.data());
+  Indices counts(static_cast<std::size_t>(filter.padded_rows()));
+  count_consistent(filter, counts.data());
   const auto end = counts.begin() + matches.size();
   std::vector<char> is_exact(counts.size(), 0);
   Indices star;
@@ -66,7 +66,7 @@ Indices largest_star(const CorrespondenceSet& matches, double tolerance) {
     const auto seed = static_cast<std::size_t>(largest - counts.begin());
     star = consistent.star(static_cast<int>(seed));
     if (is_exact[seed] || star.size() == static_cast<std::size_t>(*largest)) break;
-    *largest = static_cast<float>(star.size());
+    *largest = static_cast<int>(star.size());
     is_exact[seed] = 1;
   }
   return star;
@@ -114,7 +114,7 @@ GroupingResult group_by_geometric_consistency(const CorrespondenceSet& matches,
 }
 
 double working_memory(int matches, const GeometricConsistencyOptions&) {
-  return FilterTable::memory(matches) + 32.0 * matches;  // the counts or the order, and stars or cliques as they grow
+  return FilterTable::memory(matches) + ConsistencyFilter::memory(matches) + 32.0 * matches;  // the counts or the order, and stars or cliques as they grow
 }
 
 }  // namespace corral

@@ -11,8 +11,10 @@
 #include <optional>
 #include <set>
 
+#include "grouping/compatibility_graph.h"
 #include "grouping/filter_loops.h"
 #include "grouping/registry.h"
+#include "grouping/spectral.h"
 #include "kernel/random.h"
 #include "tests/benchmarks/multiply_add_peak.h"
 #include "tests/benchmarks/plain_groupers.h"
@@ -22,14 +24,24 @@
 namespace corral::benchmarks {
 namespace {
 
-// What an operation is:
-//   RANSAC   27 for each pose and match: 9 products and 9 sums move the point, 3 differences, 3 squares, 2 sums and a
-//            comparison judge it
-//   GC       20 for each unordered pair: 6 differences, 6 squares and 4 sums on the two sides, the difference and the sum
-//            of the squared lengths, 2 to judge them
+// What an operation is, by grouper and loop:
+//   ransac residuals  27 for each pose and match: 9 products and 9 sums move the point, 3 differences, 3 squares, 2 sums and
+//                     a comparison judge it
+//   gc     pairs      16 for each unordered pair: 6 products and 8 sums for the two squared lengths and their difference, a
+//                     square and a difference to judge it
+//   st     ratios     20 for each ordered pair: 6 differences, 6 squares and 4 sums on the two sides, the lesser and the
+//                     greater of them, a product and a comparison
+//   st     product    1 for each ordered pair that is compatible: the sum of a row
+//   si     voters     47 for each ordered pair: a ratio and a residual as above
+//   hough  method     36 for each match: 3 differences, 9 products and 6 sums into one frame, 9 and 6 out of the other, 3 sums
+// NNSR does next to no arithmetic: what it reads is counted, which is the whole table, to check it. SS is a sort, its peer.
+
+/// Numbers of a row: two points, two frames, two distances.
+constexpr int kColumns = 26;
 
 /// The arithmetic that the definition asks for, and the loop that does it, on a table.
 struct Kernel {
+  std::string name;
   double operations;
   Call call;
 };
@@ -46,22 +58,84 @@ Kernel residual_counting(const CorrespondenceSet& matches) {
     pose.translation = matches.target_points.row(row).transpose() - pose * matches.source_points.row(row).transpose();
     poses->emplace_back(*table, pose, 5 * matches.resolution);
   }
-  return {27.0 * kPoses * matches.size(), [table, poses] {
+  return {"residuals", 27.0 * kPoses * matches.size(), [table, poses] {
             for (const PoseFilter& pose : *poses) benchmark::DoNotOptimize(count_near(*table, pose, table->rows(), -1));
           }};
 }
 
 Kernel pair_counting(const CorrespondenceSet& matches) {
-  const auto table = std::make_shared<FilterTable>(matches);
-  const auto counts = std::make_shared<FloatColumn>(static_cast<std::size_t>(table->padded_rows()));
+  const auto filter = std::make_shared<ConsistencyFilter>(FilterTable(matches), 3 * matches.resolution);
+  const auto counts = std::make_shared<Indices>(static_cast<std::size_t>(filter->padded_rows()));
   const double pairs = 0.5 * matches.size() * (matches.size() - 1);
-  return {20 * pairs, [table, counts, tolerance = 3 * matches.resolution] {
-            count_consistent(*table, {*table, tolerance}, counts->data());
+  return {"pairs", 16 * pairs, [filter, counts] {
+            count_consistent(*filter, counts->data());
             benchmark::DoNotOptimize(counts->front());
           }};
 }
 
-/// GFLOP/s: the best of five runs of at least 5 ms.
+Kernel ratio_comparing(const CorrespondenceSet& matches) {
+  const auto table = std::make_shared<FilterTable>(matches);
+  const auto size = static_cast<std::size_t>(table->padded_rows());
+  const auto certain = std::make_shared<std::vector<std::uint8_t>>(size),
+             possible = std::make_shared<std::vector<std::uint8_t>>(size);
+  return {"ratios", 20.0 * matches.size() * matches.size(), [table, certain, possible] {
+            for (int block = 0; block < table->padded_rows() / 8; ++block)
+              compare_ratios(*table, SimilarityFilter(SpectralOptions().similarity), block, certain->data(),
+                             possible->data());
+            benchmark::DoNotOptimize(certain->front());
+          }};
+}
+
+Kernel graph_product(const CorrespondenceSet& matches) {
+  const auto graph = std::make_shared<CompatibilityGraph>(matches, SpectralOptions().similarity);
+  const auto numbers = std::make_shared<Eigen::VectorXd>(Eigen::VectorXd::Ones(matches.size())),
+             sums = std::make_shared<Eigen::VectorXd>(matches.size());
+  return {"product", graph->degrees().sum(), [graph, numbers, sums] {
+            graph->round_and_multiply(*numbers, *sums);
+            benchmark::DoNotOptimize(sums->data());
+          }};
+}
+
+Kernel voter_asking(const CorrespondenceSet& matches) {
+  const auto table = std::make_shared<FilterTable>(matches);
+  const auto pose = std::make_shared<PoseFilter>(*table, RigidTransform{}, 5 * matches.resolution);
+  return {"voters", 47.0 * matches.size() * matches.size(), [table, pose] {
+            const SimilarityFilter filter(SpectralOptions().similarity);
+            for (int row = 0; row < table->rows(); ++row)
+              benchmark::DoNotOptimize(ask_voters(*table, filter, *table, row, *pose));
+          }};
+}
+
+Kernel whole_method(const std::string& grouper, double operations, const CorrespondenceSet& matches) {
+  return {"method", operations,
+          [group = find_grouper(grouper).configure({}).group, &matches] { benchmark::DoNotOptimize(group(matches)); }};
+}
+
+std::vector<Kernel> arithmetic_of(const std::string& grouper, const CorrespondenceSet& matches) {
+  if (grouper == "ransac") return {residual_counting(matches)};
+  if (grouper == "gc") return {pair_counting(matches)};
+  if (grouper == "st") return {ratio_comparing(matches), graph_product(matches)};
+  if (grouper == "si") return {voter_asking(matches)};
+  if (grouper == "hough") return {whole_method(grouper, 36.0 * matches.size(), matches)};
+  return {};
+}
+
+/// The columns of a table next to each other, and the loop that adds them up.
+Kernel plain_reading(const CorrespondenceSet& matches) {
+  const auto numbers =
+      std::make_shared<AlignedColumn>(static_cast<std::size_t>(padded(kColumns * matches.size())), 1.0);
+  return {"reading", 8.0 * kColumns * matches.size(), [numbers] {
+            vectorized([&](auto kind) {
+              using Lanes = typename decltype(kind)::Lanes;
+              Lanes sums[4] = {Lanes::fill(0), Lanes::fill(0), Lanes::fill(0), Lanes::fill(0)};
+              for (std::size_t i = 0; i + 4 * kLanes <= numbers->size(); i += 4 * kLanes)
+                for (std::size_t k = 0; k < 4; ++k) sums[k] = sums[k] + Lanes::load(numbers->data() + i + k * kLanes);
+              benchmark::DoNotOptimize(sum((sums[0] + sums[1]) + (sums[2] + sums[3])));
+            });
+          }};
+}
+
+/// Operations (bytes) per nanosecond: the best of five runs of at least 5 ms.
 double rate(const Kernel& kernel) {
   double best = 0;
   for (int run = 0; run < 5; ++run) {
@@ -103,11 +177,16 @@ void print_rates(std::FILE* to, const std::vector<GrouperTime>& times) {
   const double peak = multiply_add_peak();
   std::fprintf(to, "\nmultiply-add peak of one core, single precision: %.1f GFLOP/s\n", peak);
   for (const GrouperTime& time : times) {
-    if (time.grouper != "ransac" && time.grouper != "gc") continue;
     const CorrespondenceSet& matches = time.table->matches;
-    const double reached = rate(time.grouper == "gc" ? pair_counting(matches) : residual_counting(matches));
-    std::fprintf(to, "counting: %-6s %s n = %d: %.1f GFLOP/s, %.0f %% of peak\n", time.grouper.c_str(),
-                 time.table->scene.c_str(), matches.size(), reached, 100 * reached / peak);
+    const auto print = [&](const Kernel& kernel, const char* unit, double most, const char* of) {
+      const double reached = rate(kernel);
+      std::fprintf(to, "rate: %-6s %-9s %s n = %d: %.1f %s, %.0f %% of %s\n", time.grouper.c_str(), kernel.name.c_str(),
+                   time.table->scene.c_str(), matches.size(), reached, unit, 100 * reached / most, of);
+    };
+    for (const Kernel& kernel : arithmetic_of(time.grouper, matches)) print(kernel, "GFLOP/s", peak, "peak");
+    if (time.grouper == "nnsr")
+      print(whole_method(time.grouper, 8.0 * kColumns * matches.size(), matches), "GB/s", rate(plain_reading(matches)),
+            "plain reading");
   }
 }
 

@@ -16,7 +16,8 @@ struct GrouperTime {
   double ms;
 };
 
-/// Operations per second of the groupers that do arithmetic and nothing else, beside the peak of the same core.
+/// Operations per second of the loops that groupers spend their time in, beside the peak of the same core; for those that do
+/// no arithmetic, what they read beside plain reading of as much.
 void print_rates(std::FILE* to, const std::vector<GrouperTime>& times);
 
 /// The power of n that each grouper's times grow with: least squares of log time on log n, over all meshes.

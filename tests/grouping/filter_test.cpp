@@ -83,15 +83,16 @@ TEST(Filter, CountsOfConsistentRowsAreNeverTooSmallAndHardlyTooLarge) {
     const FilterTable table(matches);
     for (const double tolerance_pr : {1e-6, 3.0, 1e9}) {
       const double tolerance = tolerance_pr * matches.resolution;
-      std::vector<float> counts(static_cast<std::size_t>(table.padded_rows()));
-      count_consistent(table, {table, tolerance}, counts.data());
+      const ConsistencyFilter filter(table, tolerance);
+      Indices counts(static_cast<std::size_t>(filter.padded_rows()));
+      count_consistent(filter, counts.data());
       for (int i = 0; i < matches.size(); ++i) {
         int expected = 0;
         for (int j = 0; j < matches.size(); ++j) {
           const PairDistances distances = pair_distances(matches, i, j);
           expected += std::abs(distances.source - distances.target) < tolerance;
         }
-        const auto found = static_cast<int>(counts[static_cast<std::size_t>(i)]);
+        const int found = counts[static_cast<std::size_t>(i)];
         EXPECT_GE(found, expected);
         if (tolerance_pr == 3 && !table.is_blind() && table.unit() < 1e4 * matches.resolution)
           exact += found == expected, ++counted;
