@@ -34,6 +34,7 @@ struct PointTree::Box {
     low[axis] = std::min(low[axis], from);
     high[axis] = std::max(high[axis], to);
   }
+  double longest_side() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
 };
 
 /// The points in their spatial order make the leaves, eight by eight; these make nodes, and so on.
@@ -55,6 +56,7 @@ PointTree::PointTree(const Points& points, const ParallelFor& parallel) {
       }
     }
   }
+  for (const Box& box : boxes) spacing_ += box.longest_side() / (std::sqrt(kLanes) * static_cast<double>(boxes.size()));
   while (boxes.size() > 1) boxes = gather(boxes);
   if (!boxes.empty()) root_ = boxes.front().number;
 }
@@ -81,11 +83,18 @@ std::vector<PointTree::Box> PointTree::gather(const std::vector<Box>& boxes) {
   return larger;
 }
 
+/// Has the first lines of a node or leaf brought near; they are needed soon.
+CORRAL_INLINE void PointTree::fetch(int number) const {
+  const void* const from = number < 0 ? static_cast<const void*>(&leaves_[leaf_index(number)])
+                                      : static_cast<const void*>(&nodes_[static_cast<std::size_t>(number)]);
+  for (int line = 0; line < 4; ++line) __builtin_prefetch(static_cast<const char*>(from) + 64 * line);
+}
+
 /// The queries, and what was found for each where it was searched last; `target` is infinite where nothing was near enough.
 struct NearestTracker::Followed : PointPairs {
   AlignedColumn was[3];     // where the query was searched
   AlignedColumn row;        // of the nearest point
-  AlignedColumn second;     // distance of the next nearest; infinite if none was near enough
+  AlignedColumn second;     // distance of the next nearest that was met; infinite if none was near enough
   AlignedColumn clearance;  // all points but the nearest are at least this far away; 0: nothing is known
   Indices order, nearest;   // of those who ask by row
 
@@ -112,6 +121,7 @@ NearestTracker::Followed& NearestTracker::follow(Eigen::Index count) {
 template <class Lanes>
 struct NearestTracker::Search {
   Lanes x, y, z, bound_squared;
+  Lanes beyond;             // 0 where the nearest is enough, infinite where the second is wanted too
   Lanes best, second, row;  // infinite at first
   Lanes leaf;               // that holds the nearest, by its place among the leaves
 
@@ -141,11 +151,13 @@ struct NearestTracker::Search {
     leaf = select(row == row_before, leaf, Lanes::fill(static_cast<double>(index)));
   }
 
-  CORRAL_INLINE double bound() const { return largest(smaller(second, bound_squared)); }
+  /// Beyond the roots of these nothing is looked at, and nothing but the nearest is nearer.
+  CORRAL_INLINE Lanes bounds() const { return smaller(smaller(best + beyond, second), bound_squared); }
+  CORRAL_INLINE double bound() const { return largest(bounds()); }
 
   /// Puts the entries of a node that are near enough on top of those that wait, the nearest last.
-  CORRAL_INLINE void unfold(const PointTree::Node& node, const Lanes (&low)[3], const Lanes (&high)[3], double limit,
-                            Visit* waiting, int& size) const {
+  CORRAL_INLINE void unfold(const PointTree& tree, const PointTree::Node& node, const Lanes (&low)[3],
+                            const Lanes (&high)[3], double limit, Visit* waiting, int& size) const {
     // Rounding is monotonic: the computed distance of two boxes is never above that of points in them.
     const auto gap = [&](int axis) {
       return larger(Lanes::fill(0),
@@ -157,6 +169,7 @@ struct NearestTracker::Search {
     const int before = size;
     visit_lanes(bits(squared <= Lanes::fill(std::min(limit, kLargest))), [&](std::size_t i) {
       waiting[size] = {squares[i], node.child[i]};
+      tree.fetch(node.child[i]);
       if (size > before && waiting[size - 1].squared < squares[i]) std::swap(waiting[size - 1], waiting[size]);
       ++size;
     });
@@ -179,7 +192,7 @@ struct NearestTracker::Search {
         look_at<kWithTies>(tree, PointTree::leaf_index(visit.number));
         limit = bound();
       } else {
-        unfold(tree.nodes_[static_cast<std::size_t>(visit.number)], low, high, limit, waiting, size);
+        unfold(tree, tree.nodes_[static_cast<std::size_t>(visit.number)], low, high, limit, waiting, size);
       }
     }
   }
@@ -214,7 +227,11 @@ void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t la
     if (unsure != 0) {
       // The second nearest is not farther than before by more than the motion.
       const Lanes reach = smaller(farthest, (Lanes::load(&f.second[place]) + moved) * Lanes::fill(1 + kRounding));
-      Search<Lanes> search{x, y, z, select(zero < is_unsure, reach * reach, Lanes::fill(-1)), none, none, none, none};
+      // The second tells how far a query may move before it is searched again: not worth it where queries move that far.
+      const Lanes motion = select(zero < Lanes::load(&f.clearance[place]), moved, zero);
+      const Lanes beyond = select(Lanes::fill(tree_.spacing_) < motion, zero, none);
+      const Lanes bound_squared = select(zero < is_unsure, reach * reach, Lanes::fill(-1));
+      Search<Lanes> search{x, y, z, bound_squared, beyond, none, none, none, none};
       search.template run<false>(tree_, low, high);
       // Ties are rare, but where points are doubled; to heed them always would double the time of the loop.
       if (bits(search.second <= smaller(search.best, most)) != 0) search.template run<true>(tree_, low, high);
@@ -227,7 +244,7 @@ void NearestTracker::search(Kind, Followed& f, std::size_t first, std::size_t la
       keep(z, f.was[2]);
       keep(search.row, f.row);
       keep(square_root(search.second), f.second);
-      keep(square_root(smaller(search.second, larger(search.bound_squared, zero))), f.clearance);
+      keep(square_root(larger(search.bounds(), zero)), f.clearance);
       double leaves[kLanes];
       search.leaf.store(leaves);
       visit_lanes(unsure, [&](std::size_t lane) {

@@ -34,10 +34,12 @@ class PointTree {
 
   struct Box;
   std::vector<Box> gather(const std::vector<Box>& boxes);
+  void fetch(int number) const;
 
   std::vector<Node, CacheLineAllocator<Node>> nodes_;
   std::vector<Leaf, CacheLineAllocator<Leaf>> leaves_;
   int root_ = kNothing;
+  double spacing_ = 0;  // about the distance of neighbours, where the points lie on a surface
 };
 
 /// Follows the nearest points of queries that move little from one call to the next, as in iterative closest points.

@@ -49,6 +49,36 @@ TEST(SpatialOrder, EveryRowComesOnce) {
   EXPECT_TRUE(spatial_order(Points(0, 3)).empty());
 }
 
+/// Whether rows first .. last - 1 of an order are what the definition makes of them: cut across the longest side of their box,
+/// so that both halves are whole shares, until none is larger than eight.
+bool is_cut(const Points& points, const Indices& order, std::ptrdiff_t first, std::ptrdiff_t last,
+            std::ptrdiff_t share) {
+  while (last - first <= share && share > 8) share /= 8;
+  if (last - first <= share) return true;
+  const auto part = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    return Points(points(Indices(order.begin() + from, order.begin() + to), Eigen::all));
+  };
+  const std::ptrdiff_t middle = first + share * ((last - first + share - 1) / share / 2);
+  const Points whole = part(first, last), lower = part(first, middle), upper = part(middle, last);
+  const Eigen::RowVector3d sides = whole.colwise().maxCoeff() - whole.colwise().minCoeff();
+  bool is_apart = false;  // along a longest side, of which there may be several
+  for (int axis = 0; axis < 3; ++axis)
+    is_apart |=
+        sides(axis) >= sides.maxCoeff() - 1e-6 && lower.col(axis).maxCoeff() <= upper.col(axis).minCoeff() + 1e-6;
+  return is_apart && is_cut(points, order, first, middle, share) && is_cut(points, order, middle, last, share);
+}
+
+TEST(SpatialOrder, EveryPartIsCutAcrossItsLongestSide) {
+  for (const int count : {1, 7, 8, 9, 16, 63, 64, 65, 100, 513, 4096, 5000, 40000}) {
+    const Points points = testing::uniform_points(count, static_cast<std::uint64_t>(count));
+    std::ptrdiff_t share = 8;
+    while (share < (count + 7) / 8) share *= 8;
+    EXPECT_TRUE(is_cut(points, spatial_order(points), 0, count, share)) << count;
+    const Points with_ties = (7 * points.array()).round();
+    EXPECT_TRUE(is_cut(with_ties, spatial_order(with_ties), 0, count, share)) << count;
+  }
+}
+
 /// A square of 64 x 64 cells, shuffled: eight of its points cannot lie in less than a box of 2 x 4, nor 64 in less than 8 x 8.
 TEST(SpatialOrder, NeighboursStayTogether) {
   RandomStream random(1);
@@ -83,11 +113,28 @@ TEST(SpatialOrder, WhatIsNotFiniteComesLast) {
   EXPECT_THAT(Indices(order.begin() + 4, order.end()), ElementsAre(1, 4));
 }
 
-TEST(SpatialOrder, ThreadsDoNotShow) {
+TEST(SpatialOrder, ThreadsAndVectorLevelsDoNotShow) {
   const Points points = testing::clustered_points(5000, 2);
   const Indices expected = spatial_order(points);
   EXPECT_EQ(spatial_order(points, testing::last_first), expected);
   EXPECT_EQ(spatial_order(points, testing::on_three_threads), expected);
+  for (const VectorLevel level : testing::available_levels()) {
+    const testing::ForcedLevel forced(level);
+    for (const auto& set : testing::hard_point_sets()) {
+      const Indices order = spatial_order(set.points);
+      const testing::ForcedLevel baseline(VectorLevel::Baseline);
+      EXPECT_EQ(spatial_order(set.points), order) << set.name;
+    }
+  }
+}
+
+/// Extents from nothing to what only halves can be subtracted of, and far from the origin.
+TEST(SpatialOrder, ScaleAndPlaceDoNotShow) {
+  const Points points = testing::uniform_points(1000, 3);
+  const Indices expected = spatial_order(points);
+  for (const double scale : {0x1p-900, 0x1p40, 0x1p1020}) EXPECT_EQ(spatial_order(scale * points), expected) << scale;
+  EXPECT_TRUE(is_permutation_of_rows(spatial_order(5e-324 * points), 1000));
+  EXPECT_TRUE(is_permutation_of_rows(spatial_order((1e300 * points).array() + 1e307), 1000));
 }
 
 }  // namespace
