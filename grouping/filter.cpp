@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "kernel/bounding_box.h"
+
 namespace corral {
 namespace {
 
@@ -13,34 +15,10 @@ constexpr double kUnitRoundoff = 0x1p-24;
 constexpr double kSlack = 16 * kUnitRoundoff;  // for the few roundings of a test and of its constants
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// The bounding box of some points; of none, the origin.
-struct Box {
-  explicit Box(const Points& points) {
-    if (points.rows() == 0) return;
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      const Eigen::Index whole = points.rows() - points.rows() % kLanes;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double* const column = points.col(axis).data();
-        Lanes least = Lanes::fill(column[0]), most = least;
-        for (Eigen::Index row = 0; row < whole; row += kLanes) {
-          const Lanes place = Lanes::load(column + row);
-          least = smaller(least, place), most = larger(most, place);
-        }
-        low(axis) = smallest(least), high(axis) = largest(most);
-        for (Eigen::Index row = whole; row < points.rows(); ++row) {
-          low(axis) = std::min(low(axis), column[row]);
-          high(axis) = std::max(high(axis), column[row]);
-        }
-      }
-    });
-  }
-  Eigen::Vector3d middle() const { return 0.5 * low + 0.5 * high; }
-  /// The largest coordinate of a point, seen from the middle: rounding keeps the order of differences.
-  double reach() const { return (low - middle()).cwiseAbs().cwiseMax((high - middle()).cwiseAbs()).maxCoeff(); }
-
-  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
-};
+/// The largest coordinate of a point, seen from the middle of their box: rounding keeps the order of differences.
+double reach(const BoundingBox& box) {
+  return (box.low - box.middle()).cwiseAbs().cwiseMax((box.high - box.middle()).cwiseAbs()).maxCoeff();
+}
 
 std::array<FloatColumn, 3> rounded(const Points& points, const Eigen::Vector3d& origin, double scale) {
   std::array<FloatColumn, 3> columns;
@@ -56,9 +34,9 @@ std::array<FloatColumn, 3> rounded(const Points& points, const Eigen::Vector3d& 
 }  // namespace
 
 FilterTable::FilterTable(const CorrespondenceSet& matches) : rows_(matches.size()) {
-  const Box source(matches.source_points), target(matches.target_points);
-  source_origin_ = source.middle(), target_origin_ = target.middle();
-  const double extent = std::max(source.reach(), target.reach());
+  const BoundingBox source = bounding_box(matches.source_points), target = bounding_box(matches.target_points);
+  source_origin_ = source.middle().transpose(), target_origin_ = target.middle().transpose();
+  const double extent = std::max(reach(source), reach(target));
   // Squares of doubles neither vanish nor overflow in this range: the double distances are what they should be.
   is_blind_ = !(extent > 0x1p-400 && extent < 0x1p400);
   int exponent = 0;

@@ -113,8 +113,10 @@ GroupingResult group_by_geometric_consistency(const CorrespondenceSet& matches,
   return result;
 }
 
-double working_memory(int matches, const GeometricConsistencyOptions&) {
-  return FilterTable::memory(matches) + ConsistencyFilter::memory(matches) + 32.0 * matches;  // the counts or the order, and stars or cliques as they grow
+double working_memory(int matches, const GeometricConsistencyOptions& options) {
+  const bool is_star = options.cluster == ClusterRule::Star;
+  // The order, or the counts, and stars or cliques as they grow.
+  return 32.0 * matches + (is_star ? FilterTable::memory(matches) + ConsistencyFilter::memory(matches) : 0);
 }
 
 }  // namespace corral

@@ -5,6 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/report.h"
 #include "io/mesh_file.h"
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/resolution.h"
@@ -46,7 +47,7 @@ MeshInfo inspect(const std::string& path) {
   info.vertices = static_cast<int>(mesh.vertices.rows());
   info.faces = static_cast<int>(mesh.triangles.rows());
   info.topology = inspect_topology(mesh);
-  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  const double diagonal = bounding_box(mesh.vertices).diagonal();
   if (diagonal > 0 && std::isfinite(diagonal)) info.resolution = point_resolution(mesh.vertices);
   if (info.vertices > 0) info.extent = mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff();
   add_warnings(info);

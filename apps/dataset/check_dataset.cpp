@@ -10,6 +10,7 @@
 
 #include "apps/dataset/pair_sweep.h"
 #include "apps/report.h"
+#include "kernel/bounding_box.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/coincidence.h"
 
@@ -93,7 +94,7 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   notes.is_complete = swept.is_complete();
   if (!notes.is_complete) return notes;
   const Points &source = swept.source.mesh.vertices, &target = swept.target.mesh.vertices;
-  const double source_extent = bounding_box_diagonal(source), target_extent = bounding_box_diagonal(target);
+  const double source_extent = bounding_box(source).diagonal(), target_extent = bounding_box(target).diagonal();
   notes.source_content = swept.source.content;
   notes.target_content = swept.target.content;
   notes.source_part = swept.source.resolution / source_extent;

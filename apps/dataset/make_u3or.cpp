@@ -7,6 +7,7 @@
 #include "apps/dataset/set_part.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"
@@ -41,7 +42,7 @@ Dataset empty_set() {
 
 Mesh at_common_size(Mesh mesh) {
   mesh.vertices.rowwise() -= vertex_centroid(mesh).transpose();
-  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  const double diagonal = bounding_box(mesh.vertices).diagonal();
   if (diagonal > 0) mesh.vertices *= kDiagonal / diagonal;
   return mesh;
 }

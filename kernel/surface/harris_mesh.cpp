@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/surface/surroundings.h"
 #include "kernel/surface/topology.h"
@@ -84,7 +85,7 @@ Eigen::VectorXd response_along(const Mesh& mesh, const std::vector<Indices>& rin
   Reach reach;
   if (options.neighborhood == "ball") reach.ball_radius = options.radius_pr * resolution;
   if (options.neighborhood == "rings") reach.most_rings = options.rings;
-  if (options.neighborhood == "adaptive") reach.longest_path = options.extent * bounding_box_diagonal(mesh.vertices);
+  if (options.neighborhood == "adaptive") reach.longest_path = options.extent * bounding_box(mesh.vertices).diagonal();
   Surroundings surroundings(mesh, rings, reach);
   Eigen::VectorXd response = Eigen::VectorXd::Constant(mesh.vertices.rows(), kNone);
   std::size_t total = 0;
@@ -134,7 +135,7 @@ Keypoints select_along(const Mesh& mesh, const std::vector<Indices>& rings, cons
 
   std::stable_sort(chosen.begin(), chosen.end(), [&](int a, int b) { return response(a) > response(b); });
   if (options.selection == "clustering") {
-    chosen = spread(mesh.vertices, chosen, options.separation * bounding_box_diagonal(mesh.vertices));
+    chosen = spread(mesh.vertices, chosen, options.separation * bounding_box(mesh.vertices).diagonal());
   } else {
     const auto wanted = std::llround(options.fraction * static_cast<double>(rings.size()));
     chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(wanted)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
@@ -60,7 +61,7 @@ struct Way {
 
 /// A random way of an object that lies on the floor about the middle: down from above or in over the floor.
 Way random_way(PosedSurface object, const PosedSurfaces& standing, RandomStream& random) {
-  const double size = bounding_box_diagonal(object.surface->mesh().vertices), far = 100 * size;
+  const double size = bounding_box(object.surface->mesh().vertices).diagonal(), far = 100 * size;
   const double angle = random.uniform(0, 2 * std::acos(-1.0)), aside = random.uniform(-0.35, 0.35) * size;
   const Eigen::Vector3d outwards(std::cos(angle), std::sin(angle), 0), across(-std::sin(angle), std::cos(angle), 0);
   const bool from_above = random.uniform() < kFromAbove;

@@ -34,11 +34,6 @@ Eigen::Vector3d vertex_centroid(const Mesh& mesh) {
   return mesh.vertices.colwise().mean().transpose();
 }
 
-double bounding_box_diagonal(const Points& points) {
-  if (points.rows() == 0) return 0;
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
-}
-
 Points area_weighted_normals(const Mesh& mesh) {
   Points normals = Points::Zero(mesh.vertices.rows(), 3);
   for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face) {

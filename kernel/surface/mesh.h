@@ -27,9 +27,6 @@ Indices rows_by_place(const Points& points);
 /// Mean of all vertices; zero for none.
 Eigen::Vector3d vertex_centroid(const Mesh& mesh);
 
-/// Diagonal of the axis-aligned bounding box in mesh units; 0 for fewer than two vertices.
-double bounding_box_diagonal(const Points& points);
-
 /// Sum over the triangles around each vertex of their normals weighted by area, V x 3 (squared mesh units, not unit
 /// length); zero for a vertex without triangles.
 Points area_weighted_normals(const Mesh& mesh);

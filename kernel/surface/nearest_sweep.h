@@ -18,7 +18,7 @@ namespace corral {
 /// for a few with all slots. The slots for which that would take long (far apart, or crowded) are returned, ascending.
 class NearestSweep {
  public:
-  explicit NearestSweep(const PointGrid& grid) : grid_(grid) {}
+  explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}
 
   template <class Attempt>
   std::vector<int> run(const ParallelFor& parallel, const Attempt& attempt) const {
@@ -69,7 +69,7 @@ class NearestSweep {
         are_new = true;
         for (const SlotRange& range : ranges) crowd += range.end - range.begin;
       }
-      const double sure = grid_.sure_radius(slot, reach);
+      const double sure = grid_.sure_radius(from_faces_[static_cast<std::size_t>(slot)], reach);
       if (crowd > kCrowd || !attempt(slot, ranges.data(), ranges.data() + ranges.size(), are_new, sure * sure, kind))
         left.push_back(slot);
       are_new = false;
@@ -78,6 +78,7 @@ class NearestSweep {
   }
 
   const PointGrid& grid_;
+  const AlignedColumn from_faces_;  // by slot
 };
 
 }  // namespace corral

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/topology.h"
@@ -86,7 +87,7 @@ RigidTransform random_motion(const Mesh& mesh, std::uint64_t seed) {
   const Eigen::Vector3d centroid = vertex_centroid(mesh);
   motion.rotation = random.rotation();
   motion.translation =
-      centroid - motion.rotation * centroid + bounding_box_diagonal(mesh.vertices) * random.direction();
+      centroid - motion.rotation * centroid + bounding_box(mesh.vertices).diagonal() * random.direction();
   return motion;
 }
 

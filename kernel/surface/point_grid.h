@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernel/bounding_box.h"
 #include "kernel/surface/mesh.h"
 #include "kernel/vectorized.h"
 
@@ -37,8 +38,11 @@ class PointGrid {
   int end(int cell) const { return begins_[static_cast<std::size_t>(cell) + 1]; }
   int cell_of(int slot) const;
 
-  /// How far from the point of a slot everything is sure to lie in the cells up to `reach` from its own.
-  double sure_radius(int slot, int reach) const;
+  /// How far each slot's point is from the nearest face of its cell, in sides of a cell, 0 .. 0.5.
+  AlignedColumn from_faces() const;
+
+  /// How far from a point at such a distance everything is sure to lie in the cells up to `reach` from its own.
+  double sure_radius(double from_face, int reach) const;
 
   /// Squared distance of a slot's point to the middle of its cell.
   double from_middle(int slot) const;
@@ -50,11 +54,12 @@ class PointGrid {
 
  private:
   friend class CellSweep;
-  void sort_into_cells(const Points& points);
+  PointGrid(const Points& points, const BoundingBox& box, double cell_side);
+  void sort_into_cells(const Points& points, const BoundingBox& box);
   Eigen::Array3d within_cell(int slot) const;  // 0 .. 1 along each axis
 
   double side_;
-  double rounding_ = 0;  // of the difference of two places among the cells, mesh units
+  double rounding_ = 0;       // of the difference of two places among the cells, mesh units
   Eigen::RowVector3d corner_;
   std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
   std::vector<int> rows_;

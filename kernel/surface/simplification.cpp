@@ -10,6 +10,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -40,7 +41,7 @@ Clusters cluster(const Points& vertices, double size) {
 
 Clusters cluster_to(const Points& vertices, int most_vertices) {
   // Cells that a surface meets fall with the square of their size: begin fine, and step by that law.
-  const double diagonal = bounding_box_diagonal(vertices);
+  const double diagonal = bounding_box(vertices).diagonal();
   double size = std::max({diagonal / std::sqrt(most_vertices) / 3, diagonal / (1 << 20), kLeastSize});
   Clusters clusters = cluster(vertices, size);
   while (clusters.count > most_vertices) {

@@ -13,6 +13,7 @@
 #include "io/dataset_file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/surface/nearest_points.h"
 #include "kernel/surface/resolution.h"
@@ -111,7 +112,7 @@ TEST(MakeU3or, ASetOfScenesWhoseTruthsFit) {
     EXPECT_LE(occlusion, 95);
     shown[pair.attributes[0]] += 100 - clutter;
     again.add(occlusion / 100, clutter / 100);
-    EXPECT_NEAR(bounding_box_diagonal(read_mesh(dataset.path(pair.source)).vertices), 200, 1e-9);
+    EXPECT_NEAR(bounding_box(read_mesh(dataset.path(pair.source)).vertices).diagonal(), 200, 1e-9);
   }
   EXPECT_EQ(again.occlusion, counts.occlusion);
   EXPECT_EQ(again.outside, counts.outside);

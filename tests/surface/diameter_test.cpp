@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/bounding_box.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh.h"
 #include "tests/support/meshes.h"
@@ -37,7 +38,7 @@ TEST(Diameter, OfFewPoints) {
 
 TEST(Diameter, OfAGridIsItsDiagonal) {
   const Points points = testing::grid(30, 40).vertices;
-  EXPECT_EQ(diameter(points), bounding_box_diagonal(points));
+  EXPECT_EQ(diameter(points), bounding_box(points).diagonal());
 }
 
 // Balls, clouds, lines and lattices (many equal distances), to the last bit.

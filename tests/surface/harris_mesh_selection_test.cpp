@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "kernel/bounding_box.h"
 #include "kernel/surface/harris_mesh.h"
 #include "tests/support/meshes.h"
 
@@ -74,7 +75,7 @@ TEST(SelectHarrisMesh, EqualDistanceIsNotFarther) {
   response(3) = 1;
   HarrisMeshOptions options;
   options.selection = "clustering";
-  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  const double diagonal = bounding_box(mesh.vertices).diagonal();
   options.separation = 3 / diagonal;
   ASSERT_GE(options.separation * diagonal, 3);
   EXPECT_THAT(select_harris_mesh(mesh, response, options).vertices, ElementsAre(0));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/perturbation.h"
@@ -72,10 +73,10 @@ TEST(HarrisMesh, RigidMotionAndAnyScaleChangeNothing) {
     for (const char* neighborhood : kNeighborhoods) {
       HarrisMeshOptions options = options_of(neighborhood);
       // The box of a turned mesh is another one: the same length along the edges is another share of it.
-      const double extent = options.extent * bounding_box_diagonal(mesh.vertices);
+      const double extent = options.extent * bounding_box(mesh.vertices).diagonal();
       const Eigen::VectorXd expected = harris_mesh_response(mesh, resolution, options);
       const Keypoints keypoints = detect_harris_mesh(mesh, resolution, options);
-      options.extent = extent / bounding_box_diagonal(moved.vertices);
+      options.extent = extent / bounding_box(moved.vertices).diagonal();
       expect_close(harris_mesh_response(moved, resolution, options), expected);
       EXPECT_EQ(detect_harris_mesh(moved, resolution, options).vertices, keypoints.vertices);
       const Mesh scaled{moved.vertices * 0.0037, moved.triangles};

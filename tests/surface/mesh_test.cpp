@@ -94,17 +94,6 @@ TEST(VertexCentroid, IsTheMeanOfAllVertices) {
   EXPECT_LT(vertex_centroid(testing::icosphere(3)).norm(), 1e-14);
 }
 
-TEST(BoundingBoxDiagonal, OfABox) {
-  EXPECT_DOUBLE_EQ(bounding_box_diagonal(points_of({{1, 2, 3}, {3, 5, 3}, {2, 3, 9}})), 7);
-  EXPECT_DOUBLE_EQ(bounding_box_diagonal(testing::grid(4, 5, 1.0).vertices), 5);
-  EXPECT_DOUBLE_EQ(bounding_box_diagonal(points_of({{-1e7, 0, 0}, {1e7, 0, 0}})), 2e7);
-}
-
-TEST(BoundingBoxDiagonal, IsZeroForFewerThanTwo) {
-  EXPECT_EQ(bounding_box_diagonal(Points(0, 3)), 0);
-  EXPECT_EQ(bounding_box_diagonal(points_of({{4, 5, 6}})), 0);
-}
-
 TEST(AreaWeightedNormals, OfAGridAreAreas) {
   // Spacing 2: every triangle has area 2; 6 triangles inside, 3 along a side, 1 or 2 at a corner.
   const Points normals = area_weighted_normals(testing::grid(5, 4, 2.0));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "tests/support/meshes.h"
 
@@ -76,7 +77,7 @@ TEST(RandomMotion, TurnsAboutTheCentroidAndShiftsByTheDiagonal) {
   Mesh mesh = testing::bumpy_sphere(2, 3);
   mesh.vertices.rowwise() += Eigen::RowVector3d(100, -50, 3);
   const Eigen::Vector3d centroid = vertex_centroid(mesh);
-  const double diagonal = bounding_box_diagonal(mesh.vertices);
+  const double diagonal = bounding_box(mesh.vertices).diagonal();
   Eigen::Vector3d mean_shift = Eigen::Vector3d::Zero();
   Eigen::Matrix3d mean_rotation = Eigen::Matrix3d::Zero();
   for (std::uint64_t seed = 0; seed < 500; ++seed) {

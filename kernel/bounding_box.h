@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "kernel/types.h"
+
+namespace corral {
+
+/// The smallest box that holds some points, in their units.
+struct BoundingBox {
+  Eigen::RowVector3d low = Eigen::RowVector3d::Zero(), high = Eigen::RowVector3d::Zero();
+
+  Eigen::RowVector3d middle() const { return 0.5 * low + 0.5 * high; }
+  double diagonal() const { return (high - low).norm(); }
+  double longest_side() const { return (high - low).maxCoeff(); }
+};
+
+/// Of no points: a box of no size at the origin. The points must be finite.
+BoundingBox bounding_box(const Points& points);
+
+}  // namespace corral
