@@ -115,10 +115,11 @@ void FeatureFilter::choose_seeds(int row, FilterScratch& scratch, Query& query) 
   int at[kFloatLanes];
   best_of_lanes(scratch.tops.data() + offset(row, panels_, kFloatLanes), panels_ * kFloatLanes, best, at);
   for (int& place : at) {
-    const int group = place;
-    place = column_of(group, 0);
+    const float* const members = scores + column_of(place, 0);
+    int top = 0;  // by arithmetic: which of them it is cannot be guessed
     for (int member = 1; member < kGroupMembers; ++member)
-      if (scores[column_of(group, member)] > scores[place]) place = column_of(group, member);
+      top += (members[member * kFloatLanes] > members[top * kFloatLanes]) * (member - top);
+    place = column_of(place, top);
   }
   score_chosen(scratch.rows.fine.data() + row * kFineNumbers, fine_.data(), at, kFloatLanes, best);
   float top[kSeeds];
@@ -157,12 +158,13 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
   const int groups = reaching(scratch.tops.data() + offset(row, panels_, kFloatLanes), panels_ * kFloatLanes, coarse,
                               scratch.groups.data());
   int found = 0;
-  for (int i = 0; i < groups; ++i)
-    for (int member = 0; member < kGroupMembers; ++member) {
-      const int column = column_of(scratch.groups[i], member);
+  for (int i = 0; i < groups; ++i) {
+    const int first_member = column_of(scratch.groups[i], 0);
+    for (int column = first_member; column < first_member + kPanelColumns; column += kFloatLanes) {
       query.chosen[found] = column;
       found += scores[column] >= coarse ? 1 : 0;
     }
+  }
   score_chosen(own.fine.data() + row * kFineNumbers, fine_.data(), query.chosen.data(), found, query.fine.data());
   query.count = 0;
   for (int i = 0; i < found; ++i) {

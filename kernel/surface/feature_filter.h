@@ -43,7 +43,7 @@ class FeatureFilter {
   /// Whether floats can carry the targets.
   bool usable() const { return error_ < std::numeric_limits<double>::infinity(); }
 
-  static constexpr int kRows = 48;  ///< source features that are searched for together
+  static constexpr int kRows = 24;  ///< source features that are searched for together
   FilterScratch scratch() const { return {target_.rows(), panels_}; }
 
   /// Calls use(column, its two nearest) for `count` source features from `first` on, at most kRows.

@@ -213,9 +213,7 @@ void FeatureProjection::finish_row(double squared, int row, ProjectedFeatures& o
   std::copy_n(fine, kCoarseDirections, coarse);
   out.error[row] = 0;
   const auto finish = [&](float* numbers, int directions) {
-    double parts[2] = {};
-    for (int k = 0; k < directions; ++k) parts[k % 2] += static_cast<double>(numbers[k]) * numbers[k];
-    const double kept = parts[0] + parts[1];
+    const double kept = Eigen::Map<const Eigen::ArrayXf>(numbers, directions).cast<double>().square().sum();
     const double rest = std::sqrt(std::max(0.0, squared - kept));
     const double rest_off = std::min(std::sqrt(square_off), rest > 0 ? square_off / rest : length + off);
     numbers[directions] = static_cast<float>(rest);

@@ -2,9 +2,6 @@
 // Compiled with contraction: a multiplication and an addition may be one instruction.
 #include "kernel/surface/feature_scores.h"
 
-#include <cstdint>
-#include <limits>
-
 #include "kernel/vectorized.h"
 
 namespace corral {
@@ -113,21 +110,15 @@ void best_of_lanes(const float* scores, int count, float* best, int* columns) {
 }
 
 int reaching(const float* scores, int count, float least, int* found) {
-  int total = 0;
+  int* end = found;
   vectorized([&](auto kind) {
     using Floats = typename decltype(kind)::Floats;
-    const Floats bound = Floats::fill(least), yes = Floats::fill(1), no = Floats::fill(0);
-    int* end = found;
-    for (int i = 0; i < count; i += kFloatLanes) {
-      std::uint64_t reached[2];
-      select(bound <= Floats::load(scores + i), yes, no).store(reinterpret_cast<std::int8_t*>(reached));
-      for (int half = 0; half < 2; ++half)
-        for (std::uint64_t bits = reached[half]; bits != 0; bits &= bits - 1)
-          *end++ = i + 8 * half + __builtin_ctzll(bits) / 8;
-    }
-    total = static_cast<int>(end - found);
+    const Floats bound = Floats::fill(least);
+    for (int i = 0; i < count; i += kFloatLanes)
+      for (unsigned reached = bits(bound <= Floats::load(scores + i)); reached != 0; reached &= reached - 1)
+        *end++ = i + __builtin_ctz(reached);
   });
-  return total;
+  return static_cast<int>(end - found);
 }
 
 void score_chosen(const float* row, const float* others, const int* chosen, int count, float* scores) {
