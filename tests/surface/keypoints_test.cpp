@@ -185,7 +185,7 @@ TEST(DetectHarris, PermutedVerticesGiveThePermutedKeypoints) {
 }
 
 TEST(DetectHarris, MostKeypointsComeBackUnderNoise) {
-  double near = 0, at = 0, all = 0;
+  double right = 0, near = 0, at = 0, all = 0;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const Mesh mesh = testing::bumpy_sphere(5, seed);
     const double resolution = point_resolution(mesh.vertices);
@@ -196,10 +196,12 @@ TEST(DetectHarris, MostKeypointsComeBackUnderNoise) {
       ASSERT_EQ(nearest.size(), 1u);
       at += nearest[0].squared_distance <= resolution * resolution;
       near += nearest[0].squared_distance <= 9 * resolution * resolution;
+      right += nearest[0].squared_distance <= 16 * resolution * resolution;
       ++all;
     }
   }
   EXPECT_GT(all, 200);
+  EXPECT_GT(right / all, 0.9) << "within 4 pr, the distance of a right match";
   EXPECT_GT(near / all, 0.8) << "within 3 pr";
   EXPECT_GT(at / all, 0.4) << "within 1 pr";
 }
