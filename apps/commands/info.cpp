@@ -47,9 +47,9 @@ MeshInfo inspect(const std::string& path) {
   info.vertices = static_cast<int>(mesh.vertices.rows());
   info.faces = static_cast<int>(mesh.triangles.rows());
   info.topology = inspect_topology(mesh);
-  const double diagonal = bounding_box(mesh.vertices).diagonal();
-  if (diagonal > 0 && std::isfinite(diagonal)) info.resolution = point_resolution(mesh.vertices);
-  if (info.vertices > 0) info.extent = mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff();
+  const BoundingBox box = bounding_box(mesh.vertices);
+  if (box.diagonal() > 0 && std::isfinite(box.diagonal())) info.resolution = point_resolution(mesh.vertices);
+  info.extent = box.high - box.low;
   add_warnings(info);
   return info;
 }

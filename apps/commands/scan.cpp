@@ -9,6 +9,7 @@
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/range_scan.h"
@@ -30,9 +31,8 @@ struct Settings {
 RangeSensor sensor_of(const Settings& settings, const Mesh& mesh) {
   if (settings.from) {
     RangeSensor sensor;
-    const Eigen::Vector3d low = mesh.vertices.colwise().minCoeff(), high = mesh.vertices.colwise().maxCoeff();
     sensor.position = parse_vector("--from", *settings.from);
-    sensor.target = (low + high) / 2;
+    sensor.target = bounding_box(mesh.vertices).middle().transpose();
     return sensor;
   }
   const std::size_t slash = std::min(settings.view.find('/'), settings.view.size());

@@ -14,6 +14,7 @@
 #include "apps/progress.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/surface/simplification.h"
 
@@ -43,12 +44,8 @@ void add_16_bit(std::string& bytes, int value) {  // little-endian
   bytes += static_cast<char>((value >> 8) & 255);
 }
 
-struct Box {
-  Eigen::RowVector3d low, high;
-};
-
 /// 0 .. 65535 from one side of the box to the other, a row after another.
-std::string quantized(const Points& points, const Box& box) {
+std::string quantized(const Points& points, const BoundingBox& box) {
   std::string bytes;
   for (Eigen::Index row = 0; row < points.rows(); ++row)
     for (int axis = 0; axis < 3; ++axis) {
@@ -112,7 +109,7 @@ class MeshShelf {
   struct Place {
     int number;
     const Mesh* full;
-    Box box;
+    BoundingBox box;
   };
 
   Place put(const std::string& path) {
@@ -122,7 +119,7 @@ class MeshShelf {
       if (last_.vertices.rows() == 0) throw IoError(path, "", "no vertices, expected a surface");
       last_path_ = path;
     }
-    const Box box{last_.vertices.colwise().minCoeff(), last_.vertices.colwise().maxCoeff()};
+    const BoundingBox box = bounding_box(last_.vertices);
     const auto [known, is_new] = numbers_.emplace(path, static_cast<int>(meshes_.size()));
     if (is_new) {
       const SimplifiedMesh display = simplify_for_display(last_, kMostVertices);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/resolution.h"
@@ -152,10 +153,10 @@ RangeSensor ring_sensor(const Mesh& mesh, int i, int n, double distance) {
                        "a number of a view, 0 .. " + std::to_string(n - 1));
   const double turn = 360 * kRadians * i / n, tilt = 25 * kRadians * std::sin(2 * turn);
   const Eigen::Vector3d away(std::cos(tilt) * std::sin(turn), std::sin(tilt), std::cos(tilt) * std::cos(turn));
-  const Eigen::Vector3d low = mesh.vertices.colwise().minCoeff(), high = mesh.vertices.colwise().maxCoeff();
+  const BoundingBox box = bounding_box(mesh.vertices);
   RangeSensor sensor;
-  sensor.target = (low + high) / 2;
-  sensor.position = sensor.target + distance * (high - low).norm() * away;
+  sensor.target = box.middle().transpose();
+  sensor.position = sensor.target + distance * box.diagonal() * away;
   sensor.up = Eigen::AngleAxisd(137.5 * kRadians * i, away) * Eigen::Vector3d::UnitY();
   return sensor;
 }
