@@ -155,18 +155,31 @@ class LocalMaxima {
     return x * x + y * y + z * z <= squared_ && (response_[j] > response_[i] || grid_.row(other) < grid_.row(slot));
   }
 
-  /// Whether no slot of some ranges beats one; only those that are as high are looked at one by one.
+  /// Whether no slot of some ranges beats one. The range of its own cell comes first: most are beaten there.
   template <class Lanes>
   CORRAL_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
-    const Lanes own = Lanes::fill(at(slot));
+    const SlotRange* const home = std::find_if(first, last, [&](const SlotRange& range) { return slot < range.end; });
+    if (beats<Lanes>(*home, slot)) return false;
     for (const SlotRange* range = first; range != last; ++range)
-      for (int i = range->begin; i < range->end; i += kLanes)
-        for (unsigned left = bits(own <= Lanes::load(&response_[static_cast<std::size_t>(i)])); left != 0;
-             left &= left - 1) {
-          const int other = i + __builtin_ctz(left);
-          if (other < range->end && is_beaten(slot, other)) return false;
-        }
+      if (range != home && beats<Lanes>(*range, slot)) return false;
     return true;
+  }
+
+  /// Whether a slot of a range beats another one.
+  template <class Lanes>
+  CORRAL_INLINE bool beats(const SlotRange& range, int slot) const {
+    const auto own = static_cast<std::size_t>(slot);
+    const Lanes response = Lanes::fill(response_[own]), x = Lanes::fill(grid_.x()[own]),
+                y = Lanes::fill(grid_.y()[own]), z = Lanes::fill(grid_.z()[own]), squared = Lanes::fill(squared_);
+    for (int i = range.begin; i < range.end; i += kLanes) {
+      const auto at = static_cast<std::size_t>(i);
+      const Lanes dx = Lanes::load(&grid_.x()[at]) - x, dy = Lanes::load(&grid_.y()[at]) - y,
+                  dz = Lanes::load(&grid_.z()[at]) - z;
+      unsigned left = bits(response <= Lanes::load(&response_[at])) & bits(dx * dx + dy * dy + dz * dz <= squared);
+      for (; left != 0; left &= left - 1)  // those behind the range count as well
+        if (is_beaten(slot, i + __builtin_ctz(left))) return true;
+    }
+    return false;
   }
 
   const PointGrid& grid_;
