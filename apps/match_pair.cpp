@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "apps/memory.h"
 #include "apps/stopwatch.h"
@@ -12,8 +13,6 @@
 #include "kernel/number_text.h"
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/keypoints.h"
-#include "kernel/surface/normals.h"
-#include "kernel/surface/resolution.h"
 
 namespace corral {
 namespace {
@@ -46,18 +45,23 @@ class Pipeline {
   Pipeline(const MatchSettings& settings, const StageObserver& observer, MatchReport& report)
       : settings_(settings), observer_(observer), report_(report) {}
 
-  void measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
+  /// Returns the normals.
+  Points measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
     mesh.validate(side);
     report.points = static_cast<int>(mesh.vertices.rows());
     report.faces = static_cast<int>(mesh.triangles.rows());
     if (settings_.inspect) stage("topology of the " + side, [&] { report.topology = inspect_topology(mesh); });
-    stage("resolution of the " + side,
-          [&] { report.resolution = point_resolution(mesh.vertices, workers(settings_.threads)); });
+    NormalsAndResolution found;
+    stage("normals and resolution of the " + side, [&] {
+      found = estimate_normals_and_resolution(mesh, normal_options(settings_), workers(settings_.threads));
+    });
+    report.resolution = found.resolution;
+    return std::move(found.normals);
   }
 
-  Descriptors describe(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
+  Descriptors describe(const Mesh& mesh, Points normals, const std::string& side, SurfaceReport& report) {
     SurfaceFeatures features =
-        describe_surface(mesh, report_.resolution, settings_,
+        describe_surface(mesh, normals, report_.resolution, settings_,
                          [&](const std::string& name, const auto& work) { stage(name + " of the " + side, work); });
     const Descriptors& descriptors = features.descriptors;
     report.candidates = features.candidates;
@@ -154,17 +158,16 @@ double pair_resolution(const std::string& rule, double source, double target) {
   return as_length(rule).value();
 }
 
-SurfaceFeatures describe_surface(const Mesh& mesh, double resolution, const MatchSettings& settings,
-                                 const StageRunner& stage) {
+NormalOptions normal_options(const MatchSettings& settings) {
+  return {20, settings.normals == "mesh", Eigen::Vector3d(settings.sensor.data())};
+}
+
+SurfaceFeatures describe_surface(const Mesh& mesh, const Points& normals, double resolution,
+                                 const MatchSettings& settings, const StageRunner& stage) {
   const ParallelFor parallel = workers(settings.threads);
   Keypoints keypoints;
-  Points normals;
   SurfaceFeatures features;
   stage("keypoints", [&] { keypoints = detect(mesh, resolution, settings, parallel); });
-  stage("normals", [&] {
-    normals =
-        estimate_normals(mesh, {20, settings.normals == "mesh", Eigen::Vector3d(settings.sensor.data())}, parallel);
-  });
   stage("descriptors", [&] {
     features.descriptors = describe_shot(mesh.vertices, normals, keypoints.vertices, resolution,
                                          {settings.support_radius_pr, 10, settings.shot}, parallel);
@@ -179,7 +182,7 @@ CorrespondenceSet match_surfaces(const DescribedSurface& source, const Described
   return make_correspondences(source, target, resolution, settings.matching, workers(settings.threads));
 }
 
-int match_stages(const MatchSettings& settings) { return settings.inspect ? 11 : 9; }
+int match_stages(const MatchSettings& settings) { return settings.inspect ? 9 : 7; }
 
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
                        const StageObserver& observer) {
@@ -187,13 +190,13 @@ MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettin
   MatchedPair pair;
   MatchReport& report = pair.report;
   Pipeline pipeline(settings, observer, report);
-  pipeline.measure(source, "source", report.source);
-  pipeline.measure(target, "target", report.target);
+  Points source_normals = pipeline.measure(source, "source", report.source);
+  Points target_normals = pipeline.measure(target, "target", report.target);
   report.resolution = pair_resolution(settings.resolution, report.source.resolution, report.target.resolution);
   report.keypoint_radius = settings.keypoint_radius_pr * report.resolution;
   report.support_radius = settings.support_radius_pr * report.resolution;
-  const Descriptors on_source = pipeline.describe(source, "source", report.source);
-  const Descriptors on_target = pipeline.describe(target, "target", report.target);
+  const Descriptors on_source = pipeline.describe(source, std::move(source_normals), "source", report.source);
+  const Descriptors on_target = pipeline.describe(target, std::move(target_normals), "target", report.target);
   pair.matches = pipeline.match({source, on_source}, {target, on_target});
   report.matches = pair.matches.size();
   add_hints(report, settings, report.hints);

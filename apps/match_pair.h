@@ -11,6 +11,7 @@
 #include "kernel/surface/feature_matching.h"
 #include "kernel/surface/harris_mesh.h"
 #include "kernel/surface/mesh.h"
+#include "kernel/surface/normals.h"
 #include "kernel/surface/topology.h"
 
 namespace corral {
@@ -77,9 +78,11 @@ struct SurfaceFeatures {
 using StageRunner = std::function<void(const std::string& stage, const std::function<void()>& work)>;
 inline void run_stage(const std::string&, const std::function<void()>& work) { work(); }
 
-/// keypoints -> normals -> frames and descriptors. `resolution`: mesh units per pr. Throws InvalidInput.
-SurfaceFeatures describe_surface(const Mesh& mesh, double resolution, const MatchSettings& settings,
-                                 const StageRunner& stage = run_stage);
+NormalOptions normal_options(const MatchSettings& settings);
+
+/// keypoints -> frames and descriptors. `normals` by the options above, `resolution` in mesh units per pr. Throws InvalidInput.
+SurfaceFeatures describe_surface(const Mesh& mesh, const Points& normals, double resolution,
+                                 const MatchSettings& settings, const StageRunner& stage = run_stage);
 
 /// The matches of two described surfaces. Throws InvalidInput.
 CorrespondenceSet match_surfaces(const DescribedSurface& source, const DescribedSurface& target, double resolution,
@@ -89,7 +92,7 @@ CorrespondenceSet match_surfaces(const DescribedSurface& source, const Described
 using StageObserver = std::function<void(const std::string& stage)>;
 int match_stages(const MatchSettings& settings);  ///< how many stages begin
 
-/// resolution -> keypoints -> normals, frames and descriptors of both surfaces -> matches. Throws InvalidInput.
+/// normals, resolution -> keypoints, frames and descriptors of both surfaces -> matches. Throws InvalidInput.
 MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
                        const StageObserver& observer = {});
 

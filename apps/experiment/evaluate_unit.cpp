@@ -9,6 +9,7 @@
 #include "apps/experiment/build_info.h"
 #include "apps/experiment/run_folder.h"
 #include "apps/read_surface.h"
+#include "apps/workers.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -28,13 +29,18 @@ std::string key_of(const std::vector<std::string>& parts) {
   return content_hash(text);
 }
 
+Descriptors describe(const Mesh& mesh, double resolution, const MatchSettings& settings) {
+  const Points normals = estimate_normals(mesh, normal_options(settings), workers(settings.threads));
+  return describe_surface(mesh, normals, resolution, settings).descriptors;
+}
+
 /// Features that several pairs need, from the store or stored.
 Descriptors shared_descriptors(const Mesh& mesh, const std::string& hash, const MatchSettings& settings,
                                const ContentStore& store) {
   const double resolution = parse_double(settings.resolution).value();
   const std::string key = key_of({"features", hash, matching_text(settings)});
   if (auto found = store.descriptors(key)) return std::move(*found);
-  Descriptors descriptors = describe_surface(mesh, resolution, settings).descriptors;
+  Descriptors descriptors = describe(mesh, resolution, settings);
   store.put(key, descriptors);
   return descriptors;
 }
@@ -198,12 +204,11 @@ StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh&
       pair_resolution(unit.matching.resolution, point_resolution(source.vertices), point_resolution(target.vertices));
   MatchSettings settings = unit.matching;
   settings.resolution = to_text(resolution);  // whatever rule it came from
-  const auto describe = [&](const Mesh& mesh, const std::string& hash, bool is_shared) {
-    return is_shared ? shared_descriptors(mesh, hash, settings, work.store)
-                     : describe_surface(mesh, resolution, unit.matching).descriptors;
+  const auto described = [&](const Mesh& mesh, const std::string& hash, bool is_shared) {
+    return is_shared ? shared_descriptors(mesh, hash, settings, work.store) : describe(mesh, resolution, unit.matching);
   };
-  const Descriptors on_source = describe(source, source_hash, unit.shares_source);
-  const Descriptors on_target = describe(target, target_hash, unit.shares_target);
+  const Descriptors on_source = described(source, source_hash, unit.shares_source);
+  const Descriptors on_target = described(target, target_hash, unit.shares_target);
   const StoredMatches made{match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching),
                            keypoints_of(on_source)};
   work.store.put(key, made);

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/error.h"
 #include "kernel/surface/nearest_sweep.h"
 #include "kernel/surface/plane_fit.h"
+#include "kernel/surface/resolution.h"
 
 namespace corral {
 namespace {
@@ -35,26 +37,35 @@ class Crowd {
   CORRAL_INLINE void collect(const PointGrid& grid, const SlotRange* first, const SlotRange* last) {
     places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
     scale_ = 1 / grid.cell_side();
-    const auto room = static_cast<std::size_t>(padded(size(), kFloatLanes));
+    const int count = size();
+    const auto room = static_cast<std::size_t>(padded(count, kFloatLanes));
     static constexpr double kLane[] = {0, 1, 2, 3, 4, 5, 6, 7};
-    const Lanes lane = Lanes::load(kLane), zero = Lanes::fill(0);
-    Lanes extent = zero;
+    const Lanes lane = Lanes::load(kLane), zero = Lanes::fill(0), scale = Lanes::fill(scale_);
+    double extents[3];
     for (int axis = 0; axis < 3; ++axis) {
       FloatColumn& column = near[axis];
       if (column.size() < room) column.resize(2 * room);
       origin_[axis] = places[axis][0];
-      const Lanes origin = Lanes::fill(origin_[axis]), scale = Lanes::fill(scale_);
+      const Lanes origin = Lanes::fill(origin_[axis]);
       const double* const from = places[axis];
       float* const to = column.data();
-      for (int i = 0; i < size(); i += kLanes) {
+      Lanes extent = zero;
+      const int whole = count / kLanes * kLanes;
+      for (int i = 0; i < whole; i += kLanes) {
         const Lanes offset = (Lanes::load(from + i) - origin) * scale;
         offset.store(to + i);
-        extent = larger(extent, select(lane < Lanes::fill(size() - i), magnitude(offset), zero));
+        extent = larger(extent, magnitude(offset));
       }
+      if (whole < count) {
+        const Lanes offset = (Lanes::load(from + whole) - origin) * scale;
+        offset.store(to + whole);
+        extent = larger(extent, select(lane < Lanes::fill(count - whole), magnitude(offset), zero));
+      }
+      extents[axis] = largest(extent);
     }
-    std::fill_n(&near[0][static_cast<std::size_t>(size())], room - static_cast<std::size_t>(size()),
+    std::fill_n(&near[0][static_cast<std::size_t>(count)], room - static_cast<std::size_t>(count),
                 std::numeric_limits<float>::infinity());
-    extent_ = largest(extent);
+    extent_ = std::max(std::max(extents[0], extents[1]), extents[2]);
   }
 
  private:
@@ -82,7 +93,8 @@ struct Shortlist {
     const float *x = crowd.near[0].data(), *y = crowd.near[1].data(), *z = crowd.near[2].data();
     Floats place = Floats::load(kLane);
     float *to_places = places.data(), *to_squares = squares.data();
-    for (int i = 0; i < crowd.size(); i += kFloatLanes, place = place + step) {
+    const int end = crowd.size();
+    for (int i = 0; i < end; i += kFloatLanes, place = place + step) {
       const Floats dx = Floats::load(x + i) - cx, dy = Floats::load(y + i) - cy, dz = Floats::load(z + i) - cz;
       const Floats square = dx * dx + dy * dy + dz * dz;
       const unsigned inside = bits(square <= limit);
@@ -127,19 +139,29 @@ struct Shortlist {
   }
 };
 
+/// By slot: planes through the k nearest, and the squared distance of the nearest in another place (infinite if the k nearest
+/// are in one).
+struct NearestFits {
+  PlaneFits planes;
+  AlignedColumn squares;
+};
+
 /// Fits a plane to the k nearest of every point.
 class NearestPlanes {
  public:
   NearestPlanes(const Points& points, const PointGrid& grid, int k)
-      : points_(points), grid_(grid), k_(std::min(k, grid.size())), fits_(grid.size()) {}
+      : points_(points),
+        grid_(grid),
+        k_(std::min(k, grid.size())),
+        fits_{PlaneFits(grid.size()), AlignedColumn(grid.x().size())} {}
 
-  PlaneFits run(const ParallelFor& parallel) {
+  NearestFits run(const ParallelFor& parallel) {
     const auto left = NearestSweep(grid_).run(parallel, [this](int slot, const SlotRange* first, const SlotRange* last,
                                                                bool are_new, double sure_squared, auto kind) {
       return fit(kind, static_cast<std::size_t>(slot), first, last, are_new, sure_squared);
     });
     if (!left.empty()) fit_with_tree(left, parallel);
-    fits_.solve_all(parallel);
+    fits_.planes.solve_all(parallel);
     return std::move(fits_);
   }
 
@@ -179,7 +201,7 @@ class NearestPlanes {
     double *to_x = scratch.x.data(), *to_y = scratch.y.data(), *to_z = scratch.z.data();
     for (int i = 0; i < k_; ++i) to_x[i] = from_x[chosen[i]], to_y[i] = from_y[chosen[i]], to_z[i] = from_z[chosen[i]];
     for (int i = k_; i < padded(k_); ++i) to_x[i] = x, to_y[i] = y, to_z[i] = z;
-    fits_.fit_chosen<Lanes>(slot, to_x, to_y, to_z, k_, x, y, z);
+    fits_.squares[slot] = fits_.planes.fit_chosen<Lanes>(slot, to_x, to_y, to_z, k_, x, y, z);
     return true;
   }
 
@@ -276,7 +298,8 @@ class NearestPlanes {
         xs.push_back(grid_.x()[other]), ys.push_back(grid_.y()[other]), zs.push_back(grid_.z()[other]);
       }
       vectorized([&](auto kind) {
-        fits_.fit_chosen<typename decltype(kind)::Lanes>(own, xs.data(), ys.data(), zs.data(), k_, x, y, z);
+        fits_.squares[own] =
+            fits_.planes.fit_chosen<typename decltype(kind)::Lanes>(own, xs.data(), ys.data(), zs.data(), k_, x, y, z);
       });
     });
   }
@@ -286,17 +309,18 @@ class NearestPlanes {
   const Points& points_;
   const PointGrid& grid_;
   int k_;
-  PlaneFits fits_;
+  NearestFits fits_;
 };
 
-}  // namespace
-
-Points estimate_normals(const Mesh& mesh, const NormalOptions& options, const ParallelFor& parallel) {
-  const int k = options.neighbors;
+/// The grid for a search for so many.
+PointGrid grid_for(const Points& points, int k) {
   if (k < 3) throw InvalidInput("estimate_normals", "neighbors", std::to_string(k), "at least 3");
   // Cells a little wider than the k nearest reach, so that the next cells around nearly always hold them.
-  const PointGrid grid = PointGrid::with_occupancy(mesh.vertices, 0.65 * k);
-  const PlaneFits fits = NearestPlanes(mesh.vertices, grid, k).run(parallel);
+  return PointGrid::with_occupancy(points, 0.65 * k);
+}
+
+/// By row, each to its side.
+Points turned(const PlaneFits& fits, const Mesh& mesh, const PointGrid& grid, const NormalOptions& options) {
   const Points sides = options.side_of_faces ? area_weighted_normals(mesh) : Points();
   Points normals(mesh.vertices.rows(), 3);
   for (int slot = 0; slot < grid.size(); ++slot) {
@@ -308,6 +332,22 @@ Points estimate_normals(const Mesh& mesh, const NormalOptions& options, const Pa
     normals.row(row) = normal.dot(outside) < 0 ? Eigen::RowVector3d(-normal) : normal;
   }
   return normals;
+}
+
+}  // namespace
+
+Points estimate_normals(const Mesh& mesh, const NormalOptions& options, const ParallelFor& parallel) {
+  const PointGrid grid = grid_for(mesh.vertices, options.neighbors);
+  const NearestFits fits = NearestPlanes(mesh.vertices, grid, options.neighbors).run(parallel);
+  return turned(fits.planes, mesh, grid, options);
+}
+
+NormalsAndResolution estimate_normals_and_resolution(const Mesh& mesh, const NormalOptions& options,
+                                                     const ParallelFor& parallel) {
+  const PointGrid grid = grid_for(mesh.vertices, options.neighbors);
+  NearestFits fits = NearestPlanes(mesh.vertices, grid, options.neighbors).run(parallel);
+  const double resolution = mean_nearest(grid, mesh.vertices, std::move(fits.squares));
+  return {turned(fits.planes, mesh, grid, options), resolution};
 }
 
 }  // namespace corral

@@ -24,4 +24,13 @@ struct NormalOptions {
 /// Throws    InvalidInput for fewer than 3 neighbours.
 Points estimate_normals(const Mesh& mesh, const NormalOptions& options = {}, const ParallelFor& parallel = one_by_one);
 
+struct NormalsAndResolution {
+  Points normals;
+  double resolution;
+};
+
+/// estimate_normals() and point_resolution() by one search for neighbours, to the same bits. Throws what either throws.
+NormalsAndResolution estimate_normals_and_resolution(const Mesh& mesh, const NormalOptions& options = {},
+                                                     const ParallelFor& parallel = one_by_one);
+
 }  // namespace corral

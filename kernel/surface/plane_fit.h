@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include "kernel/parallel.h"
 #include "kernel/surface/point_grid.h"
@@ -94,19 +95,25 @@ struct PlaneFits {
   }
 
   /// The moments of so many chosen points about one of them; the columns go on with that one up to a multiple of eight.
+  /// Returns the squared distance of the nearest in another place, infinite if there is none.
   template <class Lanes>
-  CORRAL_INLINE void fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
-                                double own_x, double own_y, double own_z) {
-    const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z);
-    Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero;
+  CORRAL_INLINE double fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
+                                  double own_x, double own_y, double own_z) {
+    const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z),
+                none = Lanes::fill(std::numeric_limits<double>::infinity());
+    Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero,
+          nearest = none;
     for (int i = 0; i < count; i += kLanes) {
       const Lanes dx = Lanes::load(x + i) - cx, dy = Lanes::load(y + i) - cy, dz = Lanes::load(z + i) - cz;
+      const Lanes squared = dx * dx + dy * dy + dz * dz;
+      nearest = smaller(nearest, select(zero < squared, squared, none));
       sx = sx + dx, sy = sy + dy, sz = sz + dz;
       sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
       syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
     }
     const Moments<double> moments{sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)};
     put(at, {static_cast<double>(count), sum(sx), sum(sy), sum(sz), moments});
+    return smallest(nearest);
   }
 
   /// All normals, in blocks.

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/resolution.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "kernel/error.h"
 #include "kernel/surface/nearest_sweep.h"
@@ -55,22 +60,37 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
     squares[i] = nearest_other<Lanes>(grid, around, i);
     return squares[i] <= sure_squared;
   });
-  if (!left.empty()) {
-    const PointIndex index(vertices);
-    for (const int slot : left) {
-      const auto i = static_cast<std::size_t>(slot);  // duplicates do not count: thousands of them would take minutes
-      if (!is_duplicate(grid, i))
-        squares[i] = nearest_by_tree(index, vertices.row(grid.row(slot)).transpose(), grid.size());
-    }
-  }
-  double total = 0;
+  for (const int slot : left) squares[static_cast<std::size_t>(slot)] = kInfinity;
+  return mean_nearest(grid, vertices, std::move(squares));
+}
+
+double mean_nearest(const PointGrid& grid, const Points& vertices, AlignedColumn squares) {
+  std::optional<PointIndex> index;
+  double largest = 0;
   int distinct = 0;
-  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
-    if (!is_duplicate(grid, slot)) total += std::sqrt(squares[slot]), ++distinct;
+  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot) {
+    if (is_duplicate(grid, slot)) {  // thousands of them would take minutes
+      squares[slot] = 0;
+      continue;
+    }
+    if (!(squares[slot] < kInfinity)) {
+      if (!index) index.emplace(vertices);
+      squares[slot] = nearest_by_tree(*index, vertices.row(grid.row(static_cast<int>(slot))).transpose(), grid.size());
+    }
+    largest = std::max(largest, squares[slot]);
+    ++distinct;
+  }
   if (distinct < 2)
     throw InvalidInput("point_resolution", "number of distinct vertices", std::to_string(distinct),
                        "at least 2 (resolution would be zero)");
-  return total / distinct;
+  if (!(largest < kInfinity)) return kInfinity;
+  // In whole numbers of a unit below the last place of the longest, which add up to the same in whatever order.
+  __extension__ typedef __int128 Wide;
+  const double units = std::ldexp(1, 61 - std::ilogb(std::sqrt(largest)));  // in 1
+  Wide total = 0;
+  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
+    total += static_cast<std::int64_t>(std::sqrt(squares[slot]) * units);
+  return static_cast<double>(total) / units / distinct;
 }
 
 }  // namespace corral

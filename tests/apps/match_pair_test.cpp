@@ -165,7 +165,7 @@ TEST(MatchPair, AnnouncesItsStages) {
   int announced = 0;
   match_pair(testing::icosphere(2), testing::icosphere(2), inspecting, [&](const std::string&) { ++announced; });
   EXPECT_EQ(announced, match_stages(inspecting));
-  EXPECT_EQ(stages.front(), "resolution of the source");
+  EXPECT_EQ(stages.front(), "normals and resolution of the source");
   EXPECT_EQ(stages.back(), "matching");
   ASSERT_EQ(report.stages.size(), stages.size());
   double memory = 0;

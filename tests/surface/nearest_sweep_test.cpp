@@ -64,6 +64,21 @@ TEST(NearestSweep, ResolutionsAgreeHoweverThePointsLie) {
   EXPECT_GT(measured, 15);
 }
 
+TEST(NearestSweep, NormalsAndResolutionAtOnceAreTheSameBits) {
+  for (const PointSet& set : testing::hard_point_sets())
+    for (const int k : {3, 20}) {
+      SCOPED_TRACE(set.name + ", k = " + std::to_string(k));
+      const Mesh mesh{set.points, Triangles(0, 3)};
+      if (set.points.rows() < 2 || set.name == "all in one place") {
+        EXPECT_THROW(estimate_normals_and_resolution(mesh, {k}), InvalidInput);
+        continue;
+      }
+      const NormalsAndResolution found = estimate_normals_and_resolution(mesh, {k}, testing::on_three_threads);
+      EXPECT_TRUE(found.normals == estimate_normals(mesh, {k}));
+      EXPECT_EQ(found.resolution, point_resolution(set.points));
+    }
+}
+
 /// So many in a crowd that no cell around it is looked through;
 Points with_a_crowd(int in_crowd, int elsewhere) {
   return testing::stacked({testing::uniform_points(elsewhere / 2, 1), 1e-6 * testing::uniform_points(in_crowd, 2),
@@ -94,8 +109,9 @@ TEST(NearestSweep, ThousandsInOnePlaceCountOnce) {
   for (const int copies : {4300, 9000, 100000}) {
     const Points others = testing::uniform_points(700, 4);
     const Points points = testing::stacked({others, others.row(5).replicate(copies, 1)});
-    EXPECT_DOUBLE_EQ(point_resolution(points), point_resolution(others)) << copies;
-    const Points normals = estimate_normals({points, Triangles(0, 3)});
+    EXPECT_EQ(point_resolution(points), point_resolution(others)) << copies;
+    const auto [normals, resolution] = estimate_normals_and_resolution({points, Triangles(0, 3)});
+    EXPECT_EQ(resolution, point_resolution(others)) << copies;
     EXPECT_TRUE(normals.row(5).isZero(0)) << "its nearest are its copies";
     for (int row = 0; row < 700; row += 50) expect_fits(points, row, 20, normals.row(row));
   }
