@@ -15,7 +15,7 @@ namespace corral {
 namespace {
 
 constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
-constexpr int kSliceBits = 3, kMostSliceBits = 6;           // a cell has at least 8 slices along x
+constexpr int kSliceBits = 5, kMostSliceBits = 6;           // a cell has at least 32 slices along x
 constexpr int kDigitBits = 11;                              // of the sort of the keys
 constexpr double kMostCells = 5e17;                         // keys with their slices are 63 bits
 

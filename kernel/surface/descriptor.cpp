@@ -21,16 +21,21 @@ constexpr int kSmallestFrame = 5;
 Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, int ahead, const Support& support) {
   if (2 * ahead != support.count) return 2 * ahead < support.count ? Eigen::Vector3d(-axis) : axis;
 
-  std::vector<std::size_t> order(static_cast<std::size_t>(support.count));
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return support.distance[a] < support.distance[b]; });
-  int positive = 0;
-  const auto median = static_cast<std::size_t>(std::clamp(support.count / 2, 2, support.count - 3));
-  for (std::size_t i = median - 2; i <= median + 2; ++i) {
-    const std::size_t at = order[i];
-    positive += support.x[at] * axis.x() + support.y[at] * axis.y() + support.z[at] * axis.z() > 0;
-  }
+  Indices order(static_cast<std::size_t>(support.count));
+  std::iota(order.begin(), order.end(), 0);
+  const auto is_nearer = [&](int a, int b) {
+    const double of_a = support.distance[static_cast<std::size_t>(a)],
+                 of_b = support.distance[static_cast<std::size_t>(b)];
+    return of_a < of_b || (of_a == of_b && a < b);
+  };
+  const auto first = order.begin() + std::clamp(support.count / 2, 2, support.count - 3) - 2;
+  std::nth_element(order.begin(), first, order.end(), is_nearer);
+  std::nth_element(first, first + 4, order.end(), is_nearer);
+  const auto is_ahead = [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    return support.x[at] * axis.x() + support.y[at] * axis.y() + support.z[at] * axis.z() > 0;
+  };
+  const auto positive = std::count_if(first, first + 5, is_ahead);
   return positive < 3 ? Eigen::Vector3d(-axis) : axis;
 }
 
@@ -256,7 +261,7 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
       if (!histogram) continue;
       outcomes[i] = Outcome::Described;
       frames[i] = *frame;
-      descriptors.features.col(static_cast<Eigen::Index>(i)) = *histogram;
+      std::copy_n(histogram->data(), kShotSize, descriptors.features.col(static_cast<Eigen::Index>(i)).data());
     }
   });
 

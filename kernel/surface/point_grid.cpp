@@ -24,13 +24,6 @@ double finest_side(const BoundingBox& box) {
   return std::max(box.longest_side() * 1e-15, std::numeric_limits<double>::min());
 }
 
-/// By insertion: the fastest for a few that are nearly in order.
-template <class Iterator, class Less>
-void sort_few(Iterator first, Iterator last, const Less& is_less) {
-  for (Iterator next = first; next != last; ++next)
-    for (Iterator at = next; at != first && is_less(*at, *(at - 1)); --at) std::swap(*at, *(at - 1));
-}
-
 }  // namespace
 
 PointGrid PointGrid::for_radius(const Points& points, double radius, int reach) {
@@ -59,20 +52,29 @@ void PointGrid::sort_into_cells(const Points& points, const BoundingBox& box) {
     double x;
     int row;
   };
-  std::vector<Item> items;  // of a cell
-  const auto rest = [&](int row) { return std::make_tuple(points(row, 1), points(row, 2), row); };
   const auto is_less = [&](const Item& a, const Item& b) {
-    return a.x < b.x || (a.x == b.x && rest(a.row) < rest(b.row));
+    if (a.x != b.x) return a.x < b.x;
+    const auto rest = [&](int row) { return std::make_tuple(points(row, 1), points(row, 2), row); };
+    return rest(a.row) < rest(b.row);
   };
+  const auto put = [&](std::size_t slot, const Item& item) { x_[slot] = item.x, rows_[slot] = item.row; };
+  std::vector<Item> items;  // of a cell with many
   for (std::size_t first = 0, last = 0; first < rows_.size(); first = last) {
     const std::int64_t cell = sorted.cells[first];
-    items.clear();
-    for (; last < rows_.size() && sorted.cells[last] == cell; ++last) items.push_back({x_[last], rows_[last]});
-    if (last - first <= kFew)
-      sort_few(items.begin(), items.end(), is_less);
-    else
+    while (last < rows_.size() && sorted.cells[last] == cell) ++last;
+    if (last - first <= kFew) {  // by insertion: they are nearly in order
+      for (std::size_t next = first + 1; next < last; ++next) {
+        const Item item{x_[next], rows_[next]};
+        std::size_t at = next;
+        for (; at != first && is_less(item, {x_[at - 1], rows_[at - 1]}); --at) put(at, {x_[at - 1], rows_[at - 1]});
+        put(at, item);
+      }
+    } else {
+      items.clear();
+      for (std::size_t slot = first; slot < last; ++slot) items.push_back({x_[slot], rows_[slot]});
       std::sort(items.begin(), items.end(), is_less);
-    for (std::size_t i = 0; i < items.size(); ++i) x_[first + i] = items[i].x, rows_[first + i] = items[i].row;
+      for (std::size_t i = 0; i < items.size(); ++i) put(first + i, items[i]);
+    }
     keys_.push_back(cell);
     begins_.push_back(static_cast<int>(first));
   }

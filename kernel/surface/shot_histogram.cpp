@@ -185,14 +185,15 @@ void add_products(const Votes& votes, std::size_t count, Histograms& histograms)
     }
 }
 
-/// The copies added, each volume at its place, at length one; nothing if that is impossible.
+/// The copies added, each volume at its place, at length one; nothing if that is impossible. Clears them.
 template <class Lanes>
-CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histograms) {
+CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(Histograms& histograms) {
   double values[kShotSize + kVolume];
   for (int volume = 0; volume < kPlaces / kVolume; ++volume)
     for (int i = 0; i < kVolume; i += kLanes) {  // what stands behind a volume is written over by the next
       const auto load = [&](int copy) { return Lanes::load(&histograms.bins[copy][volume * kVolume + i]); };
       ((load(0) + load(1)) + (load(2) + load(3))).store(&values[volume * kCosines + i]);
+      for (auto& copy : histograms.bins) Lanes::fill(0).store(&copy[volume * kVolume + i]);
     }
   Lanes squares = Lanes::fill(0);
   for (int i = 0; i < kShotSize; i += kLanes) {
@@ -211,7 +212,7 @@ CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histog
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               const std::string& form) {
   std::optional<Eigen::VectorXd> result;
-  Histograms histograms;
+  thread_local Histograms histograms;  // stays in the cache, empty between the calls
   const auto add = form == "product" ? add_products : add_one_axis_at_a_time;
   Votes votes;
   vectorized([&](auto kind) {
