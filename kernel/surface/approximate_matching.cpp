@@ -7,6 +7,8 @@ namespace corral {
 
 NearestFeatures find_two_nearest_with_flann(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target) {
   constexpr int kTrees = 4, kChecks = 256;
+  require_finite_features(source, "source");
+  require_finite_features(target, "target");
   const auto wanted = static_cast<std::size_t>(std::min<Eigen::Index>(2, target.cols()));
   const auto count = static_cast<std::size_t>(source.cols());
   // Columns here are FLANN's rows; it does not write to them.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernel/surface/feature_scores.h"
+#include "kernel/surface/nearest_features.h"
 
 namespace corral {
 namespace {
@@ -37,7 +38,7 @@ FilterScratch::FilterScratch(Index dimension, int panels)
     : rows(dimension, FeatureFilter::kRows),
       scores(size_of(FeatureFilter::kRows * panels, kPanelColumns)),
       tops(size_of(FeatureFilter::kRows * panels, kFloatLanes)),
-      groups(size_of(panels, kFloatLanes)) {
+      groups(size_of(panels + 1, kFloatLanes)) {
   for (Query& query : queries) {
     query.seeds.resize(kSeeds);
     query.chosen.resize(size_of(panels, kPanelColumns));
@@ -139,6 +140,7 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
   const int row = query.row;
   const ProjectedFeatures& own = scratch.rows;
   if (query.seed_count == 0) {  // floats cannot carry the feature
+    require_finite_features(source_.col(first + row), "source");
     query.count = static_cast<int>(target_.cols());
     std::iota(query.chosen.begin(), query.chosen.begin() + query.count, 0);
     std::fill_n(query.fine.begin(), query.count, 0.F);
@@ -159,7 +161,7 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
                               scratch.groups.data());
   int found = 0;
   for (int i = 0; i < groups; ++i) {
-    const int first_member = column_of(scratch.groups[i], 0);
+    const int first_member = column_of(static_cast<int>(scratch.groups[i]), 0);
     for (int column = first_member; column < first_member + kPanelColumns; column += kFloatLanes) {
       query.chosen[found] = column;
       found += scores[column] >= coarse ? 1 : 0;

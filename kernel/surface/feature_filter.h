@@ -28,8 +28,8 @@ struct FilterScratch {
 
   ProjectedFeatures rows;
   FloatColumn scores, tops;  ///< of a row with all targets, and of groups of targets
-  Indices groups;
-  Query queries[3];  ///< one looks for seeds, one for candidates, one measures them
+  FloatColumn groups;        ///< indices of those that reach a score
+  Query queries[3];          ///< one looks for seeds, one for candidates, one measures them
 };
 
 /// Lower bounds |x' - y'| on all distances |x - y|, from a product of short rows of floats. Let D be the larger distance

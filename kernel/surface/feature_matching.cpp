@@ -3,7 +3,6 @@
 
 #include <numeric>
 
-#include "kernel/all_finite.h"
 #include "kernel/error.h"
 #include "kernel/surface/approximate_matching.h"
 #include "kernel/surface/nearest_features.h"
@@ -27,9 +26,6 @@ void MatchingOptions::validate() const {
 FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                               const MatchingOptions& options, const ParallelFor& parallel) {
   options.validate();
-  for (const auto& [side, features] : {std::pair{"source", &source}, std::pair{"target", &target}})
-    if (!all_finite(features->data(), features->size()))
-      throw InvalidInput("match_features", std::string(side) + " features", "not finite", "finite numbers");
   FeatureMatches matches;
   if (source.cols() == 0 || target.cols() == 0) return matches;
   const NearestFeatures found = find(source, target, options, parallel);

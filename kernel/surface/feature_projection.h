@@ -10,7 +10,7 @@ namespace corral {
 
 // Features as short rows of floats whose distances are lower bounds. Only sources include this.
 
-constexpr int kCoarseNumbers = 32;  ///< directions, the length of the rest, 1
+constexpr int kCoarseNumbers = 24;  ///< directions, the length of the rest, 1
 constexpr int kFineNumbers = 64;    ///< the same with more directions; the first are those of the coarse row
 
 /// Rows of projected features, and what is known of them. Made once for as many rows as a block has.
@@ -18,7 +18,7 @@ struct ProjectedFeatures {
   ProjectedFeatures(Eigen::Index dimension, int rows);
 
   FloatColumn numbers;                               ///< of each feature: moved, scaled and rounded
-  FloatColumn coarse;                                ///< rows of 32
+  FloatColumn coarse;                                ///< rows of 24
   FloatColumn fine;                                  ///< rows of 64
   std::vector<double> coarse_squared, fine_squared;  ///< squared lengths of the rows without their last number
   std::vector<double> error;                         ///< how far the row is from that of the feature itself, at most

@@ -109,14 +109,18 @@ void best_of_lanes(const float* scores, int count, float* best, int* columns) {
   });
 }
 
-int reaching(const float* scores, int count, float least, int* found) {
-  int* end = found;
+int reaching(const float* scores, int count, float least, float* found) {
+  float* end = found;
   vectorized([&](auto kind) {
     using Floats = typename decltype(kind)::Floats;
-    const Floats bound = Floats::fill(least);
-    for (int i = 0; i < count; i += kFloatLanes)
-      for (unsigned reached = bits(bound <= Floats::load(scores + i)); reached != 0; reached &= reached - 1)
-        *end++ = i + __builtin_ctz(reached);
+    static constexpr float kLane[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const Floats bound = Floats::fill(least), step = Floats::fill(kFloatLanes);
+    Floats place = Floats::load(kLane);
+    for (int i = 0; i < count; i += kFloatLanes, place = place + step) {
+      const unsigned reached = bits(bound <= Floats::load(scores + i));
+      place.pack(reached, end);
+      end += __builtin_popcount(reached);
+    }
   });
   return static_cast<int>(end - found);
 }

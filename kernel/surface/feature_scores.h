@@ -28,8 +28,8 @@ void score_columns(const float* first_panel, int panels, int steps, const FloatR
 /// The best of each sixteenth of the scores, 16 values and indices; `count` is a multiple of 16 above 0.
 void best_of_lanes(const float* scores, int count, float* best, int* columns);
 
-/// Indices of the scores that reach `least`, ascending. Returns how many; `found` has room for all.
-int reaching(const float* scores, int count, float least, int* found);
+/// Indices of the scores that reach `least`, ascending. Returns how many; `found` has room for all and sixteen more.
+int reaching(const float* scores, int count, float least, float* found);
 
 /// Products of one row of 64 with chosen others, stored one after the other.
 void score_chosen(const float* row, const float* others, const int* chosen, int count, float* scores);

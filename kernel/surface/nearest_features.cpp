@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "kernel/all_finite.h"
+#include "kernel/error.h"
 #include "kernel/surface/feature_filter.h"
 
 namespace corral {
@@ -41,6 +43,11 @@ void search_all(const MatrixXd& source, const MatrixXd& target, Index first, Ind
 
 }  // namespace
 
+void require_finite_features(const Eigen::Ref<const MatrixXd>& features, const std::string& side) {
+  if (!all_finite(features.data(), features.size()))
+    throw InvalidInput("match_features", side + " features", "not finite", "finite numbers");
+}
+
 NearestFeatures find_two_nearest(const MatrixXd& source, const MatrixXd& target, const ParallelFor& parallel) {
   NearestFeatures result;
   if (source.cols() == 0 || target.cols() == 0) return result;
@@ -56,13 +63,17 @@ NearestFeatures find_two_nearest(const MatrixXd& source, const MatrixXd& target,
       search(first, std::min(source.cols(), first + each));
     });
   };
-  const auto measure_all = [&](Index first, Index end) { search_all(source, target, first, end, result); };
+  const auto measure_all = [&] {
+    require_finite_features(source, "source");
+    require_finite_features(target, "target");
+    for_ranges([&](Index first, Index end) { search_all(source, target, first, end, result); });
+  };
 
   const double work = static_cast<double>(source.cols()) * static_cast<double>(target.cols() * (source.rows() + 64));
   if (target.cols() < kFewTargets || source.rows() == 0 || work < kLittleWork)
-    for_ranges(measure_all);
+    measure_all();
   else if (const FeatureFilter filter(source, target, parallel); !filter.usable())
-    for_ranges(measure_all);
+    measure_all();
   else
     for_ranges([&](Index first, Index end) {
       FilterScratch scratch = filter.scratch();

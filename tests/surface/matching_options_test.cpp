@@ -46,6 +46,19 @@ TEST(MatchFeatures, FeaturesThatAreNotFiniteAreRefused) {
   EXPECT_THROW(match_features(good, bad), InvalidInput);
 }
 
+/// In what a sample of the features does not see, either.
+TEST(MatchFeatures, FeaturesThatAreNotFiniteAreRefusedAmongThousands) {
+  const Eigen::MatrixXd good = features(40, 3000, 1);
+  for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    for (const int column : {0, 1, 1777, 2999})
+      for (const char* matcher : {"exact", "flann"}) {
+        Eigen::MatrixXd bad = good;
+        bad(39, column) = value;
+        EXPECT_THROW(match_features(bad, good, {matcher, false}), InvalidInput) << matcher << " " << column;
+        EXPECT_THROW(match_features(good, bad, {matcher, false}), InvalidInput) << matcher << " " << column;
+      }
+}
+
 TEST(MutualMatches, AreThoseThatBothSidesWant) {
   for (const auto& [sources, targets] : {std::pair(80, 120), std::pair(120, 80), std::pair(1, 30), std::pair(30, 1)}) {
     const Eigen::MatrixXd source = features(12, sources, 1), target = features(12, targets, 2);
