@@ -12,15 +12,15 @@ DenseRefinement::DenseRefinement(const Mesh& source, const Mesh& target, double 
       target_(target),
       resolution_(resolution),
       parallel_(std::move(parallel)),
-      normals_(estimate_normals(target, {}, parallel_)),
+      source_normals_(estimate_normals(source, {}, parallel_)),
+      target_normals_(estimate_normals(target, {}, parallel_)),
       tree_(target.vertices, parallel_),
       tracker_(tree_, parallel_) {}
 
 void DenseRefinement::refine(std::vector<MethodRecord>& records, const std::optional<PairTruth>& truth) {
   const SurfacePair surfaces{
-      source_.vertices,
-      target_.vertices,
-      normals_,
+      {source_.vertices, source_normals_},
+      {target_.vertices, target_normals_},
       resolution_,
       [this](const Points& queries, double limit) -> const PointPairs& { return tracker_.pair(queries, limit); },
       parallel_};

@@ -24,7 +24,7 @@ class DenseRefinement {
   const Mesh &source_, &target_;
   double resolution_;
   ParallelFor parallel_;
-  Points normals_;
+  Points source_normals_, target_normals_;
   PointTree tree_;
   NearestTracker tracker_;
 };

@@ -74,7 +74,9 @@ ViewAgreement ViewSet::agreement(int a, int b, const RigidTransform& b_from_a) c
 std::optional<RigidTransform> ViewSet::lay(int a, int b, const RigidTransform& start) const {
   NearestTracker tracker(at(b).tree);
   const SurfacePair surfaces{
-      mesh(a).vertices, mesh(b).vertices, at(b).normals, resolution_,
+      {mesh(a).vertices, at(a).normals},
+      {mesh(b).vertices, at(b).normals},
+      resolution_,
       [&](const Points& queries, double limit) -> const PointPairs& { return tracker.pair(queries, limit); }};
   SurfaceOptions coarse, fine;
   fine.levels = {coarse.levels.back()};

@@ -40,7 +40,7 @@ constexpr int kMostRounds = 30, kRepetitions = 3;
 struct Task {
   std::string name;
   Mesh source, target;
-  Points target_normals;
+  Points source_normals, target_normals;
   double resolution;
   RigidTransform truth, start;
 
@@ -48,6 +48,7 @@ struct Task {
     resolution = point_resolution(source.vertices);
     truth = random_motion(source, 1);
     target = add_gaussian_noise(move_mesh(source, truth), kNoise_pr * resolution, 2);
+    source_normals = estimate_normals(source);
     target_normals = estimate_normals(target);
     RandomStream random(3);
     const Eigen::Vector3d middle = vertex_centroid(target);
@@ -60,30 +61,34 @@ struct Task {
   }
 };
 
-RefinedSurface refine_ours(const Task& task, const Points& normals, const SurfaceOptions& options) {
+RefinedSurface refine_ours(const Task& task, const Points& source_normals, const Points& target_normals,
+                           const SurfaceOptions& options) {
   const PointTree tree(task.target.vertices);
   NearestTracker tracker(tree);
   const NearestPairs pair = [&](const Points& queries, double limit) -> const PointPairs& {
     return tracker.pair(queries, limit);
   };
-  return refine_surface({task.source.vertices, task.target.vertices, normals, task.resolution, pair}, task.start,
-                        options);
+  return refine_surface(
+      {{task.source.vertices, source_normals}, {task.target.vertices, target_normals}, task.resolution, pair},
+      task.start, options);
 }
 
 RefinedSurface by_points(const Task& task) {
   SurfaceOptions options;
   options.residual = SurfaceResidual::PointToPoint;
-  options.levels = {{kLimit_pr, 1, kMostRounds}};
-  return refine_ours(task, task.target_normals, options);
+  options.levels = {{kLimit_pr, std::numeric_limits<int>::max(), kMostRounds}};
+  return refine_ours(task, task.source_normals, task.target_normals, options);
 }
 
 RefinedSurface by_sampled_points(const Task& task) {
   SurfaceOptions options;
   options.residual = SurfaceResidual::PointToPoint;
-  return refine_ours(task, task.target_normals, options);
+  return refine_ours(task, task.source_normals, task.target_normals, options);
 }
 
-RefinedSurface by_default(const Task& task) { return refine_ours(task, estimate_normals(task.target), {}); }
+RefinedSurface by_default(const Task& task) {
+  return refine_ours(task, estimate_normals(task.source), estimate_normals(task.target), {});
+}
 
 std::string error_text(const Task& task, const RefinedSurface& found) {
   return found.target_from_source ? task.error(*found.target_from_source) : to_text(found.status);

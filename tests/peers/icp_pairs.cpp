@@ -74,13 +74,15 @@ std::vector<Outcome> try_all(const Mesh& source, const Mesh& target, const Rigid
   };
   const PointTree tree(target.vertices);
   NearestTracker tracker(tree);
-  const Points normals = estimate_normals(target);
+  const Points source_normals = estimate_normals(source), target_normals = estimate_normals(target);
   int rounds = kFewestRounds;
   for (const SurfaceResidual residual : {SurfaceResidual::PointToPlane, SurfaceResidual::PointToPoint}) {
     SurfaceOptions options;
     options.residual = residual;
     const RefinedSurface found = refine_surface(
-        {source.vertices, target.vertices, normals, resolution,
+        {{source.vertices, source_normals},
+         {target.vertices, target_normals},
+         resolution,
          [&](const Points& queries, double limit) -> const PointPairs& { return tracker.pair(queries, limit); }},
         start, options);
     int taken = 0;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "kernel/vectorized.h"
+#include "refine/gram_fit.h"
+#include "refine/refine_surface.h"
+
+namespace corral {
+
+// What refine_surface() knows of two surfaces at a pose. Only sources include this.
+
+/// The pairs of one pose and what the rest needs of them.
+struct Pairing {
+  Eigen::Index points = 0, pairs = 0;
+  Gram gram = Gram::Zero();                          ///< of steps in pr about the centre
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the moved points, mesh units
+
+  double overlap() const { return points > 0 ? static_cast<double>(pairs) / static_cast<double>(points) : 0; }
+  double squares() const { return gram(12, 12); }  // pr^2
+  double rms_pr() const { return pairs > 0 ? std::sqrt(squares() / static_cast<double>(pairs)) : 0; }
+  double cost(double limit_pr) const {
+    return (squares() + static_cast<double>(points - pairs) * limit_pr * limit_pr) / static_cast<double>(points);
+  }
+};
+
+/// Mean squares of what lies between partners, across the surface and along it, pr^2.
+struct Spread {
+  double across, along;
+};
+
+/// Pairs the points of two surfaces, one pose after the other.
+class SurfacePairing {
+ public:
+  /// What is referred to must outlive this. Of points to planes, normals of a pair have at least this cosine.
+  SurfacePairing(const SurfacePair& surfaces, double least_cosine);
+
+  /// From now on every so manieth source point in spatial order, so that they are at most so many. Returns the step.
+  Eigen::Index take(int most_points);
+
+  /// Root mean square distance of the taken points from their mean, pr.
+  double size_pr() const { return size_pr_; }
+
+  Pairing pair(SurfaceResidual residual, const RigidTransform& pose, double limit_pr);
+
+  /// Of these pairs, which must be the last, of points to planes.
+  Spread spread(const Pairing& last) const;
+
+  /// Of the point-to-plane equations of the last pairs, so many, with points and normals of the target; infinite if singular.
+  double condition(Eigen::Index count);
+
+ private:
+  template <class Columns>
+  Gram gram() const;
+  template <class Columns>
+  auto sum_of_products(const AlignedColumn (&places)[3], const Eigen::Vector3d& centre, double scale) const;
+  template <class Lanes, bool kWithNormals>
+  auto eight_pairs(std::size_t first, const AlignedColumn (&places)[3], const Eigen::Vector3d& centre,
+                   double scale) const;
+  void take_normals();
+  void compare_normals(const RigidTransform& pose);
+
+  const SurfacePair& surfaces_;
+  double least_cosine_;
+  double unit_;                     // mesh units per pr
+  Points source_, source_normals_;  // in spatial order
+  std::vector<char> has_normal_;    // by target point
+
+  Eigen::Index taken_step_ = 0;
+  Points taken_, moved_;
+  std::vector<char> takes_part_;    // by taken point
+  AlignedColumn taken_normals_[3];  // zero where there is none
+  Eigen::Vector3d taken_mean_ = Eigen::Vector3d::Zero();
+  double size_pr_ = 0;
+
+  const PointPairs* pairs_ = nullptr;     // of the last pose
+  AlignedColumn is_pair_;                 // 1 or 0 for each of them
+  AlignedColumn normals_[3], agreement_;  // of the pairs, and of their two normals
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace corral
