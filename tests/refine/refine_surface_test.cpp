@@ -168,6 +168,19 @@ TEST(RefineSurface, NormalsThatDisagreeAreNoPair) {
   }
 }
 
+/// Normals that are off to one side here and to the other there.
+TEST(RefineSurface, BothNormalsCount) {
+  Surface target = landscape(0, kSide, 25), source = landscape(0, kSide, 26);
+  const Eigen::Matrix3d tilt = Eigen::AngleAxisd(10 * M_PI / 180, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  target.normals = (target.normals * tilt).eval();
+  const double by_target = refine(source, target, {}).after.rms_pr;
+  source.normals = (source.normals * tilt.transpose()).eval();
+  const RefinedSurface found = refine(source, target, {});
+  EXPECT_LT(found.after.rms_pr, 0.005);  // of 0.5 along the surface
+  EXPECT_GT(by_target, 0.02);
+  EXPECT_LT(rmse_pr(found, source.points), 0.05);
+}
+
 TEST(RefineSurface, SurfacesMayBeInsideOut) {
   const Surface target = landscape(0, kSide, 21), source = landscape(0, kSide, 22);
   const RefinedSurface found = refine(source, target, start_off(4, 3, 1)),
@@ -197,6 +210,18 @@ TEST(RefineSurface, PointsThatAreSeenTwiceAreLaidOnThemselves) {
       EXPECT_NEAR(rmse_pr(found, source.points), rmse_pr(by_points, source.points), 2e-3);
       EXPECT_EQ(refine(source, noisy(other), start_off(2, 2, seed)).levels.size(), 4u) << noise_pr;
     }
+  // So much noise that it is larger than the distances between points.
+  RandomStream random(4);
+  Surface blurred = landscape(0, kSide, 28);
+  for (Eigen::Index row = 0; row < blurred.points.rows(); ++row)
+    for (int axis = 0; axis < 3; ++axis) blurred.points(row, axis) += random.normal();
+  EXPECT_EQ(refine(landscape(0, kSide, 29), blurred, start_off(1, 1, 1)).levels.size(), 4u);
+  // Every second of them on one side, none of its own on the other: seen twice, but without noise.
+  const Surface source = landscape(0, kSide, 27);
+  const auto half = Eigen::seqN(0, source.points.rows() / 2, 2);
+  const RefinedSurface found =
+      refine(source, {source.points(half, Eigen::all), source.normals(half, Eigen::all)}, start_off(2, 2, 1));
+  EXPECT_EQ(found.levels.size(), 4u);
 }
 
 /// A wall that is not in the target, farther away than the last limit, changes nothing once the pose is near.
@@ -320,6 +345,12 @@ TEST(RefineSurface, PointsWithoutANormalAreNoPartners) {
     EXPECT_LT(rmse_pr(found, source.points), residual == SurfaceResidual::PointToPlane ? 0.05 : 0.5);
     EXPECT_NEAR(found.after.overlap, 0.75, 0.03);
   }
+  const Surface whole = landscape(0, kSide, 14);
+  Surface holed = source;
+  for (Eigen::Index row = 0; row < holed.points.rows(); row += 4)
+    holed.normals.row(row).setConstant(row % 8 == 0 ? kNaN : 0.0);
+  for (const SurfaceResidual residual : kResiduals)
+    EXPECT_NEAR(refine(holed, whole, start_off(4, 3, 1), with(residual)).after.overlap, 0.75, 0.03);
   target.normals.setConstant(kNaN);
   expect_no_pose(refine(source, target, {}), SurfaceStatus::TooLittleOverlap);
 }
