@@ -74,11 +74,17 @@ struct EquationColumns {
 
 SurfacePairing::SurfacePairing(const SurfacePair& surfaces, double least_cosine)
     : surfaces_(surfaces), least_cosine_(least_cosine), unit_(surfaces.resolution) {
-  const Indices order = spatial_order(surfaces.source.points, surfaces.parallel);
-  source_ = surfaces.source.points(order, Eigen::all);
-  source_normals_ = surfaces.source.normals(order, Eigen::all);
-  const Eigen::VectorXd squares = surfaces.target.normals.rowwise().squaredNorm();
-  for (const double square : squares) has_normal_.push_back(square > 0);
+  const auto have_normals = [](const Points& normals) {
+    const Eigen::VectorXd squares = normals.rowwise().squaredNorm();
+    std::vector<char> have;
+    have.reserve(static_cast<std::size_t>(squares.size()));
+    for (const double square : squares) have.push_back(square > 0);
+    return have;
+  };
+  order_ = spatial_order(surfaces.source.points, surfaces.parallel);
+  source_ = surfaces.source.points(order_, Eigen::all);
+  source_has_normal_ = have_normals(surfaces.source.normals);
+  target_has_normal_ = have_normals(surfaces.target.normals);
 }
 
 Eigen::Index SurfacePairing::take(int most_points) {
@@ -86,24 +92,28 @@ Eigen::Index SurfacePairing::take(int most_points) {
   if (step == taken_step_) return step;
   taken_step_ = step;
   const Eigen::Index count = (source_.rows() + step - 1) / step;
-  const auto some = Eigen::seqN(0, count, step);
-  taken_ = source_(some, Eigen::all);
-  const Points normals = source_normals_(some, Eigen::all);
-  takes_part_.clear();
-  for (const double square : normals.rowwise().squaredNorm().eval()) takes_part_.push_back(square > 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    taken_normals_[axis].assign(static_cast<std::size_t>(padded(static_cast<int>(count))), 0.0);
-    for (std::size_t i = 0; i < takes_part_.size(); ++i)
-      if (takes_part_[i]) taken_normals_[axis][i] = normals(static_cast<Eigen::Index>(i), axis);
-  }
+  taken_ = source_(Eigen::seqN(0, count, step), Eigen::all);
+  taken_rows_.clear();
+  for (std::size_t i = 0; i < order_.size(); i += static_cast<std::size_t>(step)) taken_rows_.push_back(order_[i]);
+  for (AlignedColumn& column : taken_normals_) column.clear();
   if (count == 0) return step;
   taken_mean_ = taken_.colwise().mean().transpose();
   size_pr_ = std::sqrt((taken_.rowwise() - taken_mean_.transpose()).rowwise().squaredNorm().mean()) / unit_;
   return step;
 }
 
+/// Of the taken points, zero where there is none.
+void SurfacePairing::take_source_normals() {
+  for (int axis = 0; axis < 3; ++axis) {
+    taken_normals_[axis].assign(is_pair_.size(), 0.0);
+    for (std::size_t i = 0; i < taken_rows_.size(); ++i)
+      if (source_has_normal_[static_cast<std::size_t>(taken_rows_[i])])
+        taken_normals_[axis][i] = surfaces_.source.normals(taken_rows_[i], axis);
+  }
+}
+
 /// To the pairs those of the target.
-void SurfacePairing::take_normals() {
+void SurfacePairing::take_target_normals() {
   for (int axis = 0; axis < 3; ++axis) {
     normals_[axis].assign(is_pair_.size(), 0.0);
     for (std::size_t i = 0; i < is_pair_.size(); ++i)
@@ -114,6 +124,7 @@ void SurfacePairing::take_normals() {
 /// Leaves only pairs whose normals agree, each with the mean of both. Where most look against each other, one of the
 /// surfaces is taken to be inside out.
 void SurfacePairing::compare_normals(const RigidTransform& pose) {
+  if (taken_normals_[0].size() != is_pair_.size()) take_source_normals();
   vectorized([&](auto kind) {
     using Lanes = typename decltype(kind)::Lanes;
     const Lanes zero = Lanes::fill(0);
@@ -208,10 +219,11 @@ Pairing SurfacePairing::pair(SurfaceResidual residual, const RigidTransform& pos
   is_pair_.resize(pairs_->target_rows.size());
   for (std::size_t place = 0; place < is_pair_.size(); ++place) {
     const int row = pairs_->target_rows[place];
-    is_pair_[place] = row >= 0 && has_normal_[static_cast<std::size_t>(row)] && takes_part_[place];
+    is_pair_[place] = row >= 0 && target_has_normal_[static_cast<std::size_t>(row)] &&
+                      source_has_normal_[static_cast<std::size_t>(taken_rows_[place])];
   }
   const bool by_planes = residual == SurfaceResidual::PointToPlane;
-  if (by_planes) take_normals(), compare_normals(pose);
+  if (by_planes) take_target_normals(), compare_normals(pose);
   Pairing pairing;
   pairing.centre = centre_;
   pairing.points = taken_.rows();
@@ -238,7 +250,7 @@ double SurfacePairing::condition(Eigen::Index count) {
   }
   const double size = std::sqrt(squares / static_cast<double>(count));
   if (!(size > 0)) return kInfinity;
-  take_normals();
+  take_target_normals();
   const auto equations = sum_of_products<EquationColumns>(pairs_->target, mean, 1 / size);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(equations, Eigen::EigenvaluesOnly);
   const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(5);

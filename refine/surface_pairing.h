@@ -59,19 +59,21 @@ class SurfacePairing {
   template <class Lanes, bool kWithNormals>
   auto eight_pairs(std::size_t first, const AlignedColumn (&places)[3], const Eigen::Vector3d& centre,
                    double scale) const;
-  void take_normals();
+  void take_source_normals();
+  void take_target_normals();
   void compare_normals(const RigidTransform& pose);
 
   const SurfacePair& surfaces_;
   double least_cosine_;
-  double unit_;                     // mesh units per pr
-  Points source_, source_normals_;  // in spatial order
-  std::vector<char> has_normal_;    // by target point
+  double unit_;                                              // mesh units per pr
+  Indices order_;                                            // spatial, of the source
+  Points source_;                                            // in that order
+  std::vector<char> source_has_normal_, target_has_normal_;  // by row
 
   Eigen::Index taken_step_ = 0;
   Points taken_, moved_;
-  std::vector<char> takes_part_;    // by taken point
-  AlignedColumn taken_normals_[3];  // zero where there is none
+  Indices taken_rows_;
+  AlignedColumn taken_normals_[3];  // once they are asked for
   Eigen::Vector3d taken_mean_ = Eigen::Vector3d::Zero();
   double size_pr_ = 0;
 
