@@ -99,7 +99,7 @@ class SurfaceRefiner {
     return ended(SurfaceStatus::Refined);
   }
 
-  /// With a thousandth of the squares of the step itself (about so much), so that where nothing holds it, it stays small.
+  /// With squares of the step itself.
   Gram damped(const Pairing& pairing) const {
     constexpr double kDamping = 1e-3;
     const double size = pairing_.size_pr(), share = kDamping * static_cast<double>(pairing.pairs);
@@ -139,7 +139,7 @@ class SurfaceRefiner {
     else if (!(result.condition <= options_.largest_condition))
       result.status = SurfaceStatus::DegenerateGeometry;
     else
-      result.target_from_source = pose, result.status = SurfaceStatus::Refined;
+      result.status = SurfaceStatus::Refined, result.target_from_source = pose;
   }
 
   const SurfaceOptions& options_;

@@ -71,7 +71,7 @@ struct SurfaceFit {
 struct SurfaceRound {
   double overlap;                        ///< share of the points of the level that found a partner
   double cost;                           ///< E at the pose of the pairing, pr^2
-  double squares_before, squares_after;  ///< of the residuals of these pairs; the fit never raises them
+  double squares_before, squares_after;  ///< of the residuals of these pairs, after with the damping; never raised
 };
 
 struct RefinedSurface {
@@ -80,8 +80,7 @@ struct RefinedSurface {
   SurfaceFit before;                                 ///< at the start, over the points of the first level
   SurfaceFit after;                                  ///< at the last pose that was looked at, over all points
   double condition = 0;                              ///< of the normal equations there; infinite if singular
-  std::vector<std::vector<SurfaceRound>>
-      levels;  ///< rounds of each level that was reached, and of a last fit of points
+  std::vector<std::vector<SurfaceRound>> levels;     ///< the rounds of each level, and of a last fit of points
 };
 
 /// Lays one surface on another from a pose that is nearly right: iterative closest points, coarse to fine.
@@ -91,7 +90,9 @@ struct RefinedSurface {
 /// Each round pairs every point with the nearest and then minimises the sum over those pairs (Ceres, one thread). A residual
 /// is linear in (R, t), so that the sum depends on the pairs only through the Gram matrix of 13 columns: its root is what
 /// Ceres sees. Of points to points, E never rises. Of points to planes it may, because the nearest point is not the one
-/// with the least residual. A level ends at rest, or after three rounds without a lower E than before.
+/// with the least residual. A level ends at rest, or after three rounds without a lower E than before. To the sum over n
+/// pairs come n / 1000 squares of the step (those of its shift and, of R - I, a third of those of size |R - I|, size the root
+/// mean square distance from the centre), so that a step stays small where no pair holds it; at rest they are zero.
 ///
 /// Planes    n = (n_j + s R n_i) / |n_j + s R n_i|, R that of the pairing, s = -1 where most of the pairs look against each
 ///           other (a surface may be inside out), else 1. Normals that differ by more than an angle are no pair: at rims
