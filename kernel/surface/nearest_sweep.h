@@ -81,4 +81,8 @@ class NearestSweep {
   const AlignedColumn from_faces_;  // by slot
 };
 
+/// point_resolution() of points whose neighbours were looked at (in resolution.cpp). `squares`: by slot, the squared distance
+/// to the nearest point in another place; infinite where it is not known.
+double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares);
+
 }  // namespace corral

@@ -9,7 +9,6 @@
 #include "kernel/error.h"
 #include "kernel/surface/nearest_sweep.h"
 #include "kernel/surface/plane_fit.h"
-#include "kernel/surface/resolution.h"
 
 namespace corral {
 namespace {

@@ -64,7 +64,7 @@ double point_resolution(const Points& vertices, const ParallelFor& parallel) {
   return mean_nearest(grid, vertices, std::move(squares));
 }
 
-double mean_nearest(const PointGrid& grid, const Points& vertices, AlignedColumn squares) {
+double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares) {
   std::optional<PointIndex> index;
   double largest = 0;
   int distinct = 0;
@@ -74,8 +74,8 @@ double mean_nearest(const PointGrid& grid, const Points& vertices, AlignedColumn
       continue;
     }
     if (!(squares[slot] < kInfinity)) {
-      if (!index) index.emplace(vertices);
-      squares[slot] = nearest_by_tree(*index, vertices.row(grid.row(static_cast<int>(slot))).transpose(), grid.size());
+      if (!index) index.emplace(points);
+      squares[slot] = nearest_by_tree(*index, points.row(grid.row(static_cast<int>(slot))).transpose(), grid.size());
     }
     largest = std::max(largest, squares[slot]);
     ++distinct;

@@ -3,7 +3,6 @@
 
 #include "kernel/parallel.h"
 #include "kernel/surface/mesh.h"
-#include "kernel/surface/point_grid.h"
 
 namespace corral {
 
@@ -14,9 +13,5 @@ namespace corral {
 /// Cost      O(V) time where vertices lie evenly on a surface. Any number of threads gives the same bits.
 /// Throws    InvalidInput for fewer than two distinct vertices.
 double point_resolution(const Points& vertices, const ParallelFor& parallel = one_by_one);
-
-/// The same for sources that have looked at the neighbours already. `squares`: by slot of a grid over the vertices, the
-/// squared distance to the nearest vertex in another place; infinite where it is not known.
-double mean_nearest(const PointGrid& grid, const Points& vertices, AlignedColumn squares);
 
 }  // namespace corral
