@@ -23,8 +23,8 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
     get_target_property(options corral_options INTERFACE_COMPILE_OPTIONS)
     string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options})
     set(folder ${CMAKE_CURRENT_BINARY_DIR}/facts)
-    add_custom_target(${target}_facts BYPRODUCTS ${folder}/apps/experiment/build_facts.h VERBATIM
-      COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D HEADER=${folder}/apps/experiment/build_facts.h -D VERSION=${PROJECT_VERSION}
+    add_custom_target(${target}_facts BYPRODUCTS ${folder}/apps/runtime/build_facts.h VERBATIM
+      COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D HEADER=${folder}/apps/runtime/build_facts.h -D VERSION=${PROJECT_VERSION}
         -D "COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" -D "FLAGS=${flags}" -D "LIBRARIES=${libraries}"
         -P ${CORRAL_BUILD_FACTS_SCRIPT})
     add_dependencies(${target} ${target}_facts)

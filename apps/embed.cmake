@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Files of the source tree that the program carries with it:
 #   corral_embed(<target> <name> <files>...)
-# adds the function `const EmbeddedFiles& embedded_<name>()` of apps/embedded_files.h to the target: the text of each file by its
+# adds the function `const EmbeddedFiles& embedded_<name>()` of apps/runtime/embedded_files.h to the target: the text of each file by its
 # name without folders. A changed file is embedded anew. Files are text; run as a script, this writes the source.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   function(corral_embed target name)
@@ -25,7 +25,7 @@ foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
   string(APPEND entries "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
 endforeach()
-file(WRITE ${SOURCE} "#include \"apps/embedded_files.h\"
+file(WRITE ${SOURCE} "#include \"apps/runtime/embedded_files.h\"
 
 namespace corral {
 

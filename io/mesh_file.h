@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "apps/match_pair.h"
+#include "apps/pair/match_pair.h"
 #include "grouping/registry.h"
 #include "refine/refine_rigid.h"
 

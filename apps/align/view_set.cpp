@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "kernel/surface/normals.h"
-#include "kernel/surface/resolution.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/visibility.h"
+#include "kernel/surface/search/resolution.h"
 #include "refine/refine_surface.h"
 
 namespace corral {

@@ -6,9 +6,9 @@
 
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/surface/depth_image.h"
-#include "kernel/surface/mesh.h"
-#include "kernel/surface/nearest_points.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/scan/depth_image.h"
+#include "kernel/surface/search/nearest_points.h"
 
 namespace corral {
 

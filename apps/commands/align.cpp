@@ -7,10 +7,10 @@
 #include "apps/align/align_view_set.h"
 #include "apps/align/alignment_files.h"
 #include "apps/commands/commands.h"
-#include "apps/progress.h"
-#include "apps/read_surface.h"
-#include "apps/report.h"
-#include "apps/workers.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/progress.h"
+#include "apps/runtime/workers.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral claims: which of the paper's statements a run bears out.
+#include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
-#include "apps/experiment/claim_report.h"
 
 namespace corral {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "apps/match_pair.h"
-#include "apps/read_surface.h"
+#include "apps/pair/match_pair.h"
+#include "apps/pair/read_surface.h"
 #include "grouping/registry.h"
-#include "kernel/surface/view_triangulation.h"
+#include "kernel/surface/scan/view_triangulation.h"
 
 namespace corral {
 

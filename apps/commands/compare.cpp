@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "apps/commands/commands.h"
-#include "apps/experiment/comparison.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
+#include "apps/results/comparison.h"
 
 namespace corral {
 namespace {

@@ -5,8 +5,8 @@
 #include "apps/dataset/import_b3r.h"
 #include "apps/dataset/import_u3m.h"
 #include "apps/dataset/import_u3or.h"
-#include "apps/report.h"
-#include "apps/workers.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/workers.h"
 
 namespace corral {
 namespace {

@@ -6,8 +6,8 @@
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
-#include "apps/report.h"
-#include "apps/workers.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/workers.h"
 
 namespace corral {
 namespace {

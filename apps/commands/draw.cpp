@@ -5,8 +5,8 @@
 
 #include "apps/commands/commands.h"
 #include "apps/picture/pair_picture.h"
-#include "apps/progress.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

@@ -4,11 +4,11 @@
 #include <map>
 
 #include "apps/commands/commands.h"
-#include "apps/experiment/specification.h"
-#include "apps/experiment/study.h"
-#include "apps/experiment/time_study.h"
-#include "apps/progress.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/progress.h"
+#include "apps/study/specification.h"
+#include "apps/study/study.h"
+#include "apps/study/time_study.h"
 
 namespace corral {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
-#include "apps/evaluate_pair.h"
-#include "apps/memory.h"
-#include "apps/report.h"
+#include "apps/pair/evaluate_pair.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/memory.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

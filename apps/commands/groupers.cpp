@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral groupers: the methods and their options.
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 
 namespace corral {
 namespace {

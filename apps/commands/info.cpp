@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 #include "io/mesh_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/resolution.h"
-#include "kernel/surface/topology.h"
+#include "kernel/surface/mesh/topology.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

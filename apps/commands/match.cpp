@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
 #include "apps/commands/commands.h"
-#include "apps/progress.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/matches_file.h"
 #include "kernel/error.h"

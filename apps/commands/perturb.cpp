@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/random.h"
-#include "kernel/surface/perturbation.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/mesh/perturbation.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

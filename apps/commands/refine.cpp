@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report_pair.h"
+#include "apps/pair/report_pair.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

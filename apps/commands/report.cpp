@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // corral report: the figures, tables and pictures of some runs.
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 
 #include <filesystem>
 
+#include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
-#include "apps/experiment/claim_report.h"
-#include "apps/experiment/comparison.h"
-#include "apps/experiment/page.h"
-#include "apps/experiment/pair_gallery.h"
-#include "apps/experiment/study_figures.h"
-#include "apps/figure/gnuplot.h"
-#include "apps/figure/rank_diagram.h"
-#include "apps/progress.h"
+#include "apps/report/figure/gnuplot.h"
+#include "apps/report/figure/rank_diagram.h"
+#include "apps/report/page.h"
+#include "apps/report/pair_gallery.h"
+#include "apps/report/study_figures.h"
+#include "apps/results/comparison.h"
+#include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "kernel/error.h"
 

@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "apps/commands/commands.h"
-#include "apps/dense_refinement.h"
-#include "apps/explain.h"
-#include "apps/progress.h"
-#include "apps/report_pair.h"
-#include "apps/workers.h"
+#include "apps/pair/dense_refinement.h"
+#include "apps/pair/explain.h"
+#include "apps/pair/report_pair.h"
+#include "apps/runtime/progress.h"
+#include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

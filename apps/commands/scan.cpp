@@ -4,17 +4,17 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
-#include "apps/workers.h"
+#include "apps/runtime/report.h"
+#include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/range_scan.h"
-#include "kernel/surface/resolution.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/range_scan.h"
+#include "kernel/surface/scan/visibility.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/report_pair.h"
+#include "apps/pair/report_pair.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"

@@ -4,12 +4,12 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/resolution.h"
-#include "kernel/surface/view_triangulation.h"
+#include "kernel/surface/scan/view_triangulation.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

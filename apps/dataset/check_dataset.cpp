@@ -9,10 +9,10 @@
 #include <tuple>
 
 #include "apps/dataset/pair_sweep.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 #include "kernel/bounding_box.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/coincidence.h"
+#include "kernel/surface/search/coincidence.h"
 
 namespace corral {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "io/dataset_file.h"
 #include "kernel/parallel.h"
 

@@ -11,8 +11,8 @@
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/perturbation.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/mesh/perturbation.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "kernel/parallel.h"
 
 namespace corral {

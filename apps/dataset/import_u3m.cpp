@@ -10,15 +10,15 @@
 
 #include "apps/align/alignment_files.h"
 #include "apps/dataset/set_folder.h"
-#include "apps/read_surface.h"
-#include "apps/report.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/report.h"
 #include "io/dataset_file.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/visibility.h"
 
 namespace corral {
 namespace {

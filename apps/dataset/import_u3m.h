@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/align/align_view_set.h"
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "kernel/parallel.h"
 
 namespace corral {

@@ -7,7 +7,7 @@
 #include "io/mesh_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
-#include "kernel/surface/perturbation.h"
+#include "kernel/surface/mesh/perturbation.h"
 
 namespace corral {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/recognition_pairs.h"
-#include "apps/embedded_files.h"
+#include "apps/runtime/embedded_files.h"
 #include "io/toml_file.h"
 #include "kernel/error.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "kernel/parallel.h"
 
 namespace corral {

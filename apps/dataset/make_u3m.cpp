@@ -9,9 +9,9 @@
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"
-#include "kernel/surface/range_scan.h"
-#include "kernel/surface/resolution.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/range_scan.h"
+#include "kernel/surface/scan/visibility.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

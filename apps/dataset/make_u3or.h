@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "kernel/parallel.h"
-#include "kernel/surface/scene_composition.h"
+#include "kernel/surface/scan/scene_composition.h"
 
 namespace corral {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/match_pair.h"
-#include "apps/report.h"
+#include "apps/pair/match_pair.h"
+#include "apps/runtime/report.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/visibility.h"
 
 namespace corral {
 namespace {

@@ -11,7 +11,7 @@
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "apps/progress.h"
+#include "apps/runtime/progress.h"
 #include "io/dataset_file.h"
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/surface/mesh.h"
-#include "kernel/surface/nearest_points.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/search/nearest_points.h"
 
 namespace corral {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/published_sets.h"
 
-#include "apps/embedded_files.h"
+#include "apps/runtime/embedded_files.h"
 #include "io/toml_file.h"
 
 namespace corral {

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "apps/dataset/measure_dataset.h"
-#include "apps/report.h"
+#include "apps/runtime/report.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/visibility.h"
+#include "kernel/surface/scan/visibility.h"
 
 namespace corral {
 namespace {

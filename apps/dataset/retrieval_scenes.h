@@ -8,7 +8,7 @@
 #include "apps/dataset/set_folder.h"
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/dataset/set_folder.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/surface/normals.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {

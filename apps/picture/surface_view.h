@@ -5,7 +5,7 @@
 
 #include "apps/picture/raster.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/surface/point_grid.h"
+#include "kernel/surface/search/point_grid.h"
 
 namespace corral {
 namespace {

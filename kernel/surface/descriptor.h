@@ -6,7 +6,7 @@
 
 #include "kernel/local_reference_frame.h"
 #include "kernel/parallel.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 #include "kernel/vectorized.h"
 
 namespace corral {

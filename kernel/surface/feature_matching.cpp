@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/surface/approximate_matching.h"
-#include "kernel/surface/nearest_features.h"
+#include "kernel/surface/matching/approximate_matching.h"
+#include "kernel/surface/matching/nearest_features.h"
 
 namespace corral {
 namespace {

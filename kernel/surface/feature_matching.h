@@ -6,7 +6,7 @@
 #include "kernel/correspondence_set.h"
 #include "kernel/parallel.h"
 #include "kernel/surface/descriptor.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

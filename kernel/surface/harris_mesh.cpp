@@ -9,8 +9,8 @@
 
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
+#include "kernel/surface/mesh/topology.h"
 #include "kernel/surface/surroundings.h"
-#include "kernel/surface/topology.h"
 
 namespace corral {
 namespace {

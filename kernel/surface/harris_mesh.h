@@ -4,7 +4,7 @@
 #include <string>
 
 #include "kernel/surface/keypoints.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

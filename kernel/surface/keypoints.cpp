@@ -10,7 +10,7 @@
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/plane_fit.h"
-#include "kernel/surface/point_grid.h"
+#include "kernel/surface/search/point_grid.h"
 
 namespace corral {
 namespace {

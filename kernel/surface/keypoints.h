@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/parallel.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "kernel/error.h"
-#include "kernel/surface/nearest_sweep.h"
 #include "kernel/surface/plane_fit.h"
+#include "kernel/surface/search/nearest_sweep.h"
 
 namespace corral {
 namespace {

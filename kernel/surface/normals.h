@@ -2,8 +2,8 @@
 #pragma once
 
 #include "kernel/parallel.h"
-#include "kernel/surface/mesh.h"
-#include "kernel/surface/neighborhood.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/search/neighborhood.h"
 
 namespace corral {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kernel/parallel.h"
-#include "kernel/surface/point_grid.h"
+#include "kernel/surface/search/point_grid.h"
 #include "kernel/vectorized.h"
 
 namespace corral {

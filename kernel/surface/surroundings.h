@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/surface/mesh.h"
-#include "kernel/surface/neighborhood.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/search/neighborhood.h"
 
 namespace corral {
 

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "apps/match_pair.h"
+#include "apps/pair/match_pair.h"
 #include "kernel/evaluation.h"
 #include "kernel/random.h"
-#include "kernel/surface/perturbation.h"
+#include "kernel/surface/mesh/perturbation.h"
 
 namespace corral::benchmarks {
 namespace {

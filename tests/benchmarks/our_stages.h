@@ -4,14 +4,14 @@
 // Every call that is compared with another library, in one place. Each does what a program would: it builds what it
 // searches in. The options are the paper's.
 
-#include "apps/match_pair.h"
+#include "apps/pair/match_pair.h"
 #include "kernel/surface/descriptor.h"
 #include "kernel/surface/feature_matching.h"
 #include "kernel/surface/keypoints.h"
-#include "kernel/surface/neighborhood.h"
 #include "kernel/surface/normals.h"
-#include "kernel/surface/point_grid.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/neighborhood.h"
+#include "kernel/surface/search/point_grid.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral::ours {
 

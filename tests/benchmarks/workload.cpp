@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "io/mesh_file.h"
-#include "kernel/surface/perturbation.h"
+#include "kernel/surface/mesh/perturbation.h"
 #include "tests/benchmarks/our_stages.h"
 
 namespace corral::benchmarks {

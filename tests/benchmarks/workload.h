@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernel/surface/descriptor.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral::benchmarks {
 

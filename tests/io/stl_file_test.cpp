@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/mesh_file.h"
-#include "kernel/surface/topology.h"
+#include "kernel/surface/mesh/topology.h"
 #include "tests/io/ply_encoder.h"
 #include "tests/io/scratch.h"
 #include "tests/io/square_mesh.h"

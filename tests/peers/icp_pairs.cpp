@@ -14,15 +14,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluate_pair.h"
-#include "apps/match_pair.h"
+#include "apps/pair/evaluate_pair.h"
+#include "apps/pair/match_pair.h"
 #include "io/dataset_file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/random.h"
-#include "kernel/surface/nearest_points.h"
 #include "kernel/surface/normals.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/nearest_points.h"
+#include "kernel/surface/search/resolution.h"
 #include "refine/refine_surface.h"
 #include "tests/peers/icp.h"
 

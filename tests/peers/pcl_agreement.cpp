@@ -10,7 +10,7 @@
 #include <exception>
 
 #include "io/mesh_file.h"
-#include "kernel/surface/neighborhood.h"
+#include "kernel/surface/search/neighborhood.h"
 #include "tests/benchmarks/our_stages.h"
 #include "tests/peers/pcl_surface.h"
 

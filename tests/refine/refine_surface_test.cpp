@@ -12,10 +12,10 @@
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/random.h"
-#include "kernel/surface/nearest_points.h"
+#include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/normals.h"
-#include "kernel/surface/perturbation.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/nearest_points.h"
+#include "kernel/surface/search/resolution.h"
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 

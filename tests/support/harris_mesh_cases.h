@@ -10,7 +10,7 @@
 #include <string>
 
 #include "kernel/surface/harris_mesh.h"
-#include "kernel/surface/perturbation.h"
+#include "kernel/surface/mesh/perturbation.h"
 #include "tests/support/meshes.h"
 
 namespace corral::testing {

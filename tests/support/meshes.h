@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral::testing {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/rigid_transform.h"
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral::testing {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kernel/surface/keypoints.h"
-#include "kernel/surface/mesh.h"
-#include "kernel/surface/neighborhood.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/search/neighborhood.h"
 
 namespace corral::testing {
 

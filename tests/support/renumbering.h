@@ -3,7 +3,7 @@
 
 // The same surface with its vertices in another order.
 
-#include "kernel/surface/mesh.h"
+#include "kernel/surface/mesh/mesh.h"
 #include "tests/support/row_order.h"
 
 namespace corral::testing {

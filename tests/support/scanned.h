@@ -3,8 +3,8 @@
 
 // Surfaces before a sensor, for tests.
 
-#include "kernel/surface/perturbation.h"
-#include "kernel/surface/range_scan.h"
+#include "kernel/surface/mesh/perturbation.h"
+#include "kernel/surface/scan/range_scan.h"
 #include "tests/support/meshes.h"
 
 namespace corral::testing {

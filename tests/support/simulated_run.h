@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiment/run_folder.h"
+#include "apps/results/run_folder.h"
 
 namespace corral::testing {
 

@@ -11,7 +11,7 @@
 #include "kernel/surface/feature_matching.h"
 #include "kernel/surface/keypoints.h"
 #include "kernel/surface/normals.h"
-#include "kernel/surface/resolution.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral::testing {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernel/random.h"
-#include "kernel/surface/view_triangulation.h"
+#include "kernel/surface/scan/view_triangulation.h"
 
 namespace corral::testing {
 

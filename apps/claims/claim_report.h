@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/claims/claims.h"
+#include "apps/runtime/report.h"
+
+namespace corral {
+
+/// The verdicts under a heading for each experiment, with margins, parts and where to look, and the paper's slips below.
+std::string claims_text(const std::vector<ClaimVerdict>& verdicts, const std::vector<std::string>& slips);
+
+/// The same as a list, one object a claim.
+Json claims_json(const std::vector<ClaimVerdict>& verdicts);
+
+}  // namespace corral

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/claims/claim_file.h"
+#include "apps/results/run_folder.h"
+
+namespace corral {
+
+enum class Verdict { Holds, Fails, Undecidable };
+std::string verdict_name(Verdict verdict);
+
+/// What came out of one rule.
+struct PartVerdict {
+  std::string id;  ///< such as "C1a"; that of the claim if it has one rule
+  Verdict verdict = Verdict::Undecidable;
+  std::string reason;  ///< why it is undecidable; else empty
+  double margin = 0;   ///< from the boundary, below 0 on the failing side; only if it was decided
+  std::string unit;    ///< of the margin
+  std::string levels;  ///< for rules about each level: where it holds, such as "2 of 3 levels: 0.35 0.4"
+  bool is_note = false;
+};
+
+/// What came out of a claim. It holds if all its rules hold, fails if one fails.
+struct ClaimVerdict {
+  std::string id, text, note;
+  Verdict verdict = Verdict::Undecidable;
+  std::optional<double> margin;  ///< the least of its rules'
+  std::string unit;
+  double changed = 0;         ///< share of the resamples over pairs with another verdict
+  bool is_weak = false;       ///< more than 20 %
+  bool is_sensitive = false;  ///< (P + R) / 2 instead of F1 gives another verdict
+  std::vector<PartVerdict> parts;
+  std::vector<std::string> experiments;  ///< where to look
+  std::vector<std::string> figures;      ///< the panel of each, empty if it has none
+};
+
+/// Judges every claim on what several runs hold together. Throws InvalidInput if two of them have the same experiment.
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<RunFolder>& runs);
+
+}  // namespace corral

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "apps/pair/evaluate_pair.h"
+
+#include <algorithm>
+
+#include "apps/runtime/report.h"
+#include "apps/runtime/stopwatch.h"
+#include "kernel/surface/scan/visibility.h"
+#include "kernel/surface/search/diameter.h"
+
+namespace corral {
+namespace {
+
+/// A source vertex is in the overlap if its true image has a target vertex this near.
+constexpr double kOverlapPr = 4;
+
+/// Scores what was found, and refines and judges its pose.
+void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
+  if (truth)
+    record.score =
+        score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
+  record.pose = refine_rigid(matches, record.found.selected);
+  if (truth) judge_pose(record, *truth, matches.resolution);
+}
+
+}  // namespace
+
+PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
+                     double resolution, double threshold_pr) {
+  return {target_from_source, points_in_overlap(source.vertices, target, target_from_source, resolution), threshold_pr,
+          source.vertices, corral::diameter(source.vertices)};
+}
+
+Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
+                         double resolution) {
+  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution);
+}
+
+PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
+  PoseErrors errors{rotation_error_deg(estimate, truth.target_from_source),
+                    translation_error_pr(estimate, truth.target_from_source, resolution),
+                    point_error(estimate, truth.target_from_source, truth.overlap, resolution), std::nullopt};
+  if (truth.diameter > 0)
+    errors.add_share = point_error(estimate, truth.target_from_source, truth.vertices, truth.diameter)->mean_pr;
+  return errors;
+}
+
+bool is_registered(const std::optional<PoseErrors>& errors) {
+  return errors && errors->points && errors->points->mean_pr <= kSuccessPr;
+}
+
+std::string MethodRecord::outcome() const {
+  if (!score || !failure.empty()) return "";
+  const bool at_first = is_registered(initial_errors), in_the_end = is_registered(errors);
+  return in_the_end ? (at_first ? "found" : "saved") : (at_first ? "spoiled" : "lost");
+}
+
+std::string MethodRecord::status() const {
+  if (!failure.empty()) return (is_too_large ? "too large: " : "failed: ") + failure;
+  if (pose.target_from_source && !pose.converged) return "not converged";
+  return to_text(pose.status);
+}
+
+void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution) {
+  if (record.pose.initial) record.initial_errors = pose_errors(*record.pose.initial, truth, resolution);
+  if (record.pose.target_from_source) record.errors = pose_errors(*record.pose.target_from_source, truth, resolution);
+}
+
+TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat) {
+  TimedGrouping timed;
+  std::vector<double> times;
+  for (int call = 0; call < std::max(repeat, 1); ++call) {
+    Stopwatch watch;
+    GroupingResult found = group(matches);
+    times.push_back(watch.lap_ms());
+    if (call == 0) timed.found = std::move(found);
+  }
+  std::sort(times.begin(), times.end());
+  timed.time_ms = (times[(times.size() - 1) / 2] + times[times.size() / 2]) / 2;
+  return timed;
+}
+
+std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit) {
+  const double needed = grouper.working_memory ? grouper.working_memory(matches) : 0;
+  if (!(needed > memory_limit)) return "";
+  return "needs " + fixed(needed / 1e6, 1) + " MB, the limit is " + fixed(memory_limit / 1e6, 1) + " MB";
+}
+
+std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth) {
+  const std::vector<bool> labels = label_inliers(matches, truth.target_from_source, truth.threshold_pr);
+  std::vector<MethodRecord> bounds(2);
+  bounds[0].method = "oracle";
+  bounds[1].method = "floor";
+  for (int row = 0; row < matches.size(); ++row) {
+    if (labels[static_cast<std::size_t>(row)]) bounds[0].found.selected.push_back(row);
+    bounds[1].found.selected.push_back(row);
+  }
+  for (MethodRecord& bound : bounds) judge(bound, matches, truth);
+  return bounds;
+}
+
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
+                             double memory_limit) {
+  MethodRecord record;
+  record.method = name;
+  record.failure = too_large(grouper, matches.size(), memory_limit);
+  record.is_too_large = !record.failure.empty();
+  if (record.is_too_large) return record;
+  try {
+    TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
+    record.found = std::move(timed.found);
+    record.time_ms = timed.time_ms;
+    judge(record, matches, truth);
+  } catch (const std::exception& error) {
+    record.failure = *error.what() ? error.what() : "no reason given";
+  }
+  return record;
+}
+
+}  // namespace corral

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grouping/registry.h"
+#include "kernel/evaluation.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "refine/refine_rigid.h"
+#include "refine/refine_surface.h"
+
+namespace corral {
+
+/// What is known of a pair beside its matches.
+struct PairTruth {
+  RigidTransform target_from_source;
+  Points overlap;           ///< source points over which a pose is judged; may be empty
+  double threshold_pr = 4;  ///< of a right match
+  Points vertices{};        ///< of the source, all; empty where it is not seen
+  double diameter = 0;      ///< of these, mesh units
+};
+/// The same with the overlap of the two surfaces and the extent of the source. `resolution`: mesh units per pr.
+PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
+                     double resolution, double threshold_pr);
+
+/// Those of some source points whose true image has a target vertex within 4 pr.
+Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
+                         double resolution);
+
+/// A pose against the truth; what there is no point to take over is absent.
+struct PoseErrors {
+  double rotation_error_deg = 0, translation_error_pr = 0;
+  std::optional<PointError> points;  ///< over the overlap
+  std::optional<double> add_share;   ///< mean distance of all source vertices, in diameters of the source (ADD)
+};
+PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
+
+constexpr double kSuccessPr = 5;          ///< most mean error over the overlap of a pose that registers a pair
+constexpr double kSuccessAddShare = 0.1;  ///< a pose recognises an object if its ADD is below
+
+/// Whether a pose registers the pair: it is there, and its PointError::mean_pr is at most kSuccessPr.
+bool is_registered(const std::optional<PoseErrors>& errors);
+
+/// One method on one pair. What could not be had is absent.
+struct MethodRecord {
+  std::string method;
+  std::string failure;        ///< why the method gave no answer; empty if it did
+  bool is_too_large = false;  ///< it was not asked, since it would need more memory than it may
+  GroupingResult found;
+  std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
+  std::optional<GroupingScore> score;  ///< with a truth
+  RefinedPose pose;
+  std::optional<PoseErrors> initial_errors;  ///< of the least-squares fit to the selection, with a truth
+  std::optional<PoseErrors> errors;          ///< of the refined pose, with a truth
+  std::optional<RefinedSurface> dense;       ///< from the refined pose, where it was asked for
+  std::optional<PoseErrors> dense_errors;    ///< of its pose, with a truth
+
+  /// Who is to thank for the alignment, and who to blame. "found": the fit to the selection registers the pair, and so does
+  /// the refined pose. "saved": only the refined pose does. "spoiled": only the fit does. "lost": neither does. Empty
+  /// without a truth or an answer.
+  std::string outcome() const;
+
+  /// "refined", "not converged" (a pose that was still moving), why there is no pose, "too large: ..." or "failed: ...".
+  std::string status() const;
+};
+
+/// The median wall time of `repeat` calls (at least 1) and the answer of the first.
+struct TimedGrouping {
+  GroupingResult found;
+  double time_ms = 0;
+};
+TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat);
+
+/// Why a method may not be asked for so many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
+std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit);
+
+/// Fills in the errors of the refined pose and of its start.
+void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution);
+
+/// What a perfect grouper and none at all would leave to the refinement: "oracle" selects all right matches, "floor" all
+/// matches. Scored, refined and judged as the methods are, without a time.
+std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth);
+
+/// Groups, scores, refines and judges; a method that refuses the table, or needs more bytes than the limit, is a record
+/// of that.
+MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
+                             const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
+                             double memory_limit = std::numeric_limits<double>::infinity());
+
+}  // namespace corral

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "apps/pair/explain.h"
+
+#include "apps/runtime/report.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+namespace {
+
+constexpr int kFewKeypoints = 20;
+constexpr int kLeastRows = 3;  ///< of a pose
+constexpr double kLeastPrecision = 0.5;
+
+std::string pr(double value) { return fixed(value, value < 10 ? 2 : 1) + " pr"; }
+
+/// "ends at 0.08 pr" or why it ends nowhere.
+std::string end_of(const MethodRecord& record) {
+  if (!record.pose.target_from_source) return std::string("gives no pose (") + to_text(record.pose.status) + ")";
+  if (!record.errors || !record.errors->points) return "gives a pose, with no overlap to judge it over";
+  return "ends at " + pr(record.errors->points->mean_pr);
+}
+
+/// "kept 3 of the 30 right matches among 12 rows (precision 0.250, recall 0.100); their fit is at 7.10 pr"
+std::string start_of(const MethodRecord& record) {
+  const GroupingScore& score = *record.score;
+  std::string text = "kept " + std::to_string(score.correct) + " of the " + std::to_string(score.true_matches) +
+                     " right matches among " + std::to_string(score.selected) + " rows";
+  if (score.precision && score.recall)
+    text += " (precision " + fixed(score.precision, 3) + ", recall " + fixed(score.recall, 3) + ")";
+  if (record.initial_errors && record.initial_errors->points)
+    text += "; their fit is at " + pr(record.initial_errors->points->mean_pr);
+  return text;
+}
+
+std::string dense_of(const MethodRecord& record) {
+  if (!record.dense_errors || !record.dense_errors->points) return "";
+  std::string text = "; laid on the whole surface it is at " + pr(record.dense_errors->points->mean_pr);
+  if (!is_registered(record.dense_errors)) return text + ", lost";
+  return is_registered(record.errors) ? text : text + ", which registers the pair after all";
+}
+
+Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
+  if (is_registered(oracle.errors)) return Cause::Found;
+  return counts.keypoints_in_overlap < kFewKeypoints ? Cause::TooFewKeypoints : Cause::TooFewTrueMatches;
+}
+
+/// Of a method that does not register the pair though the oracle does, by a fit that does not either.
+Cause cause_of_loss(const MethodRecord& record) {
+  if (record.score->correct < kLeastRows) return Cause::GrouperMissed;
+  if (record.pose.status == RefineStatus::DegenerateGeometry) return Cause::DegenerateSelection;
+  if (*record.score->precision < kLeastPrecision) return Cause::GrouperMissed;
+  if (record.pose.status == RefineStatus::Diverged) return Cause::Diverged;
+  return record.pose.converged ? Cause::GrouperMissed : Cause::NotConverged;
+}
+
+Cause cause_of_method(const MethodRecord& record, Cause pair) {
+  if (!record.failure.empty()) return Cause::NoAnswer;
+  const bool starts_well = is_registered(record.initial_errors);
+  if (is_registered(record.errors)) return starts_well ? Cause::Found : Cause::Saved;
+  if (starts_well && record.pose.status == RefineStatus::Diverged) return Cause::Diverged;
+  if (starts_well) return record.pose.converged ? Cause::Spoiled : Cause::NotConverged;
+  return pair == Cause::Found ? cause_of_loss(record) : pair;
+}
+
+std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodRecord& oracle) {
+  const std::string matches = std::to_string(counts.true_matches) + " of " + std::to_string(counts.keypoints) +
+                              " matches are right within " + fixed(counts.threshold_pr, 1) + " pr";
+  const std::string keypoints = std::to_string(counts.keypoints_in_overlap) + " of " +
+                                std::to_string(counts.keypoints) + " matched source keypoints lie in the overlap";
+  const std::string limit =
+      "a pair is registered by a mean error over the overlap of at most " + to_text(kSuccessPr) + " pr";
+  if (cause == Cause::Found)
+    return "can be registered: " + matches + ", and the refinement of all of them " + end_of(oracle) + "; " +
+           keypoints + " (" + limit + ")";
+  if (cause == Cause::TooFewKeypoints)
+    return "lost before the grouping: " + keypoints + ", and of fewer than " + std::to_string(kFewKeypoints) +
+           " not even " + std::to_string(kLeastRows) + " right matches can be expected (at 15 % right); " + matches;
+  if (counts.true_matches < kLeastRows)
+    return "lost before the grouping: " + matches + ", and a pose needs " + std::to_string(kLeastRows) + "; " +
+           keypoints;
+  return "lost before the grouping: " + matches + ", but the refinement of all of them " + end_of(oracle) + "; " +
+         keypoints + " (" + limit + ")";
+}
+
+/// What a grouper did to a pair that it had to register.
+std::string fault_of(const GroupingScore& score) {
+  if (score.correct < kLeastRows) return "the grouper missed them";
+  return *score.precision < kLeastPrecision ? "the grouper let too many wrong ones in"
+                                            : "the grouper kept right ones that do not fix the pose";
+}
+
+std::string text_of_method(Cause cause, const MethodRecord& record) {
+  switch (cause) {
+    case Cause::NoAnswer:
+      return "gave no answer: " + record.status();
+    case Cause::Found:
+      return "the grouper found it: " + start_of(record) + ", the refinement " + end_of(record);
+    case Cause::Saved:
+      return "the optimiser saved it: " + start_of(record) + ", above " + to_text(kSuccessPr) + " pr, the refinement " +
+             end_of(record);
+    case Cause::TooFewKeypoints:
+    case Cause::TooFewTrueMatches:
+      return std::string("lost with the pair (") + to_text(cause) + "): " + start_of(record) + ", the refinement " +
+             end_of(record);
+    case Cause::GrouperMissed:
+      return fault_of(*record.score) + ": " + start_of(record) + ", the refinement " + end_of(record);
+    case Cause::DegenerateSelection:
+      return "the selection fixes no pose: " + start_of(record) + ", on one line or in one place";
+    case Cause::Diverged:
+      return "the optimiser diverged: " + start_of(record) + ", the refinement " + end_of(record);
+    case Cause::NotConverged:
+      return "the optimiser did not come to rest within " + std::to_string(record.pose.iterations) +
+             " iterations: " + start_of(record) + ", the refinement " + end_of(record);
+    case Cause::Spoiled:
+      break;
+  }
+  return "the optimiser spoiled it: " + start_of(record) + ", the refinement " + end_of(record);
+}
+
+}  // namespace
+
+const char* to_text(Cause cause) {
+  switch (cause) {
+    case Cause::Found:
+      return "found";
+    case Cause::Saved:
+      return "saved";
+    case Cause::TooFewKeypoints:
+      return "too few keypoints";
+    case Cause::TooFewTrueMatches:
+      return "too few true matches";
+    case Cause::GrouperMissed:
+      return "grouper missed";
+    case Cause::DegenerateSelection:
+      return "degenerate selection";
+    case Cause::Diverged:
+      return "diverged";
+    case Cause::NotConverged:
+      return "not converged";
+    case Cause::Spoiled:
+      return "spoiled";
+    case Cause::NoAnswer:
+      break;
+  }
+  return "no answer";
+}
+
+std::vector<Explanation> explain_pair(const PairCounts& counts, const MethodRecord& oracle,
+                                      const std::vector<MethodRecord>& records) {
+  const Cause pair = cause_of_pair(counts, oracle);
+  std::vector<Explanation> explanations{{"pair", pair, text_of_pair(pair, counts, oracle)}};
+  for (const MethodRecord& record : records) {
+    const Cause cause = cause_of_method(record, pair);
+    explanations.push_back({record.method, cause, text_of_method(cause, record) + dense_of(record)});
+  }
+  return explanations;
+}
+
+}  // namespace corral

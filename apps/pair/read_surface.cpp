@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "apps/pair/read_surface.h"
+
+#include <cmath>
+
+#include "io/file.h"
+#include "io/mesh_file.h"
+#include "kernel/bounding_box.h"
+#include "kernel/error.h"
+
+namespace corral {
+
+Mesh read_surface(const std::string& path) {
+  const bool is_list = path.size() > 4 && path.compare(path.size() - 4, 4, ".txt") == 0;
+  Mesh mesh = is_list ? parse_xyz(path, read_file(path)) : read_mesh(path);
+  const double diagonal = bounding_box(mesh.vertices).diagonal();
+  if (!std::isfinite(diagonal))
+    throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
+  if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface");
+  if (!(diagonal > 0))
+    throw IoError(path, "",
+                  "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +
+                      "at least two places (the resolution would be zero)");
+  return mesh;
+}
+
+}  // namespace corral

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report/page.h"
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/page_scenes.h"
+#include "apps/report/page_tables.h"
+#include "apps/runtime/embedded_files.h"
+#include "io/file.h"
+#include "kernel/error.h"
+
+namespace corral {
+
+const EmbeddedFiles& embedded_page();  // the files of apps/experiment/page
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the
+/// same.
+std::string json_in_html(const Json& json) {
+  return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
+}
+std::string script_in_html(const std::string& script) {
+  return "<script>\n" + replaced(replaced(script, "</script", "<\\/script"), "<!--", "<\\!--") + "\n</script>\n";
+}
+
+std::string text_in_html(const std::string& text) { return replaced(replaced(text, "&", "&amp;"), "<", "&lt;"); }
+
+/// The template with each {{name}} replaced; what is put in is not looked at again.
+std::string filled(const std::string& html, const std::map<std::string, std::string>& parts) {
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t open = html.find("{{"); open != std::string::npos; open = html.find("{{", at)) {
+    const std::size_t close = html.find("}}", open);
+    text += html.substr(at, open - at) + parts.at(html.substr(open + 2, close - open - 2));
+    at = close + 2;
+  }
+  return text + html.substr(at);
+}
+
+std::string libraries(const std::string& folder) {
+  std::string scripts;
+  for (const auto& [name, package] : {std::pair<std::string, std::string>{"three/three.min.js", "libjs-three"},
+                                      {"three/examples/js/controls/TrackballControls.js", "libjs-three"},
+                                      {"chart.js/chart.min.js", "libjs-chart.js"}}) {
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    if (!std::filesystem::exists(path))
+      throw IoError(path, "", "is missing and the page needs it: install Debian's package " + package);
+    scripts += script_in_html(read_file(path));
+  }
+  return scripts;
+}
+
+Json verdicts_of(const std::string& text) {
+  if (text.empty()) return nullptr;
+  const Json verdicts = Json::parse(text, nullptr, false);
+  bool is_good = verdicts.is_array();
+  if (is_good)
+    for (const Json& verdict : verdicts)
+      is_good = is_good && verdict.is_object() && verdict.contains("id") && verdict.contains("verdict");
+  if (!is_good)
+    throw InvalidInput("report_page", "verdicts", text.substr(0, 40),
+                       "a JSON list of {id, verdict, margin, statement}");
+  return verdicts;
+}
+
+}  // namespace
+
+std::string report_page(const std::vector<RunFolder>& runs, const PageOptions& options) {
+  const std::string scripts = libraries(options.scripts);
+  Json data = {{"title", options.title}, {"verdicts", verdicts_of(options.verdicts)}};
+  data.update(page_tables(runs));
+  data.update(page_scenes(runs, choose_scenes(runs, options.pairs_in_3d)));
+  const EmbeddedFiles& files = embedded_page();
+  std::string own;
+  for (const char* name : {"data.js", "zoom.js", "panels.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
+    own += script_in_html(files.at(name));
+  return filled(files.at("report.html"), {{"title", text_in_html(options.title)},
+                                          {"style", files.at("report.css")},
+                                          {"libraries", scripts},
+                                          {"data", json_in_html(data)},
+                                          {"scripts", own}});
+}
+
+}  // namespace corral

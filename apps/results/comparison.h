@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/results/level_table.h"
+#include "apps/results/statistics.h"
+
+namespace corral {
+
+/// What methods are compared by.
+enum class Metric { F1, Precision, Recall, Success };
+const std::vector<std::string>& metric_names();  ///< in this order
+Metric metric_of(const std::string& name);       ///< throws InvalidInput
+
+/// The numbers of a method at a level.
+const RowNumbers& metric_column(const MethodColumns& columns, Metric metric);
+
+/// Two methods on the same pairs.
+struct MethodPair {
+  std::string first, second;
+  MeanInterval difference;  ///< first - second
+  double p = 1;             ///< Wilcoxon's signed-rank test; of successes McNemar's exact one
+  double adjusted_p = 1;    ///< Holm's, among all pairs of methods of the experiment
+  bool is_exact = true;     ///< not by the normal approximation
+};
+
+/// The mean of a method at a level, over all pairs that count there; absent without any. Deterministic: its interval
+/// depends on the numbers and on the names of experiment, level and method.
+std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
+                                       const std::string& method, Metric metric);
+
+/// A method at a level.
+struct LevelMean {
+  std::string level, method;
+  int pairs = 0;
+  MeanInterval mean;
+};
+
+/// The methods of an experiment beside each other.
+struct MethodComparison {
+  std::string experiment;
+  std::vector<std::string> methods;  ///< those with numbers, in the experiment's order; the bounds left out
+  int pairs = 0;                     ///< with a number of every method
+  std::vector<MeanInterval> means;   ///< of each method
+  RankComparison ranks;
+  std::vector<MethodPair> tests;
+  std::vector<LevelMean> levels;  ///< level by level, over all pairs that count
+};
+
+/// Compares on the pairs that count, over all levels; a pair that stands at several levels is one, by the mean of its numbers.
+/// Deterministic. Nothing but the levels is filled with fewer than 2 methods or without a common pair.
+MethodComparison compare_methods(const ExperimentTable& table, Metric metric);
+
+}  // namespace corral

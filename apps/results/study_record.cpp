@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "apps/results/study_record.h"
+
+#include <cmath>
+#include <set>
+
+#include "io/csv_file.h"
+#include "io/line_reader.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+namespace {
+
+/// Calls visit(name, field) for every column of a record, in order: the one list that writing and reading follow.
+template <class Record, class Visitor>
+void visit_columns(Record& record, Visitor&& visit) {
+  visit("experiment", record.experiment);
+  visit("dataset", record.dataset);
+  visit("level", record.level);
+  visit("pair", record.pair);
+  visit("method", record.method);
+  visit("repeat", record.repeat);
+  visit("value", record.value);
+  visit("status", record.status);
+  visit("matches", record.matches);
+  visit("true_matches", record.true_matches);
+  visit("selected", record.selected);
+  visit("correct", record.correct);
+  visit("precision", record.precision);
+  visit("recall", record.recall);
+  visit("f1", record.f1);
+  visit("frame_share", record.frame_share);
+  const auto visit_pose = [&](const std::string& pose, auto& scores) {
+    visit(pose + "_rotation_error_deg", scores.rotation_error_deg);
+    visit(pose + "_translation_error_pr", scores.translation_error_pr);
+    visit(pose + "_mean_error_pr", scores.mean_error_pr);
+    visit(pose + "_rmse_pr", scores.rmse_pr);
+    visit(pose + "_add_share", scores.add_share);
+  };
+  visit_pose("initial", record.initial);
+  visit_pose("refined", record.refined);
+  visit_pose("dense", record.dense);
+  visit("time_ms", record.time_ms);
+  visit("selection", record.selection);
+}
+
+std::string cell_text(const std::string& value) { return value; }
+std::string cell_text(int value) { return std::to_string(value); }
+std::string cell_text(double value) { return to_text(value); }
+template <class Value>
+std::string cell_text(const std::optional<Value>& value) {
+  return value ? cell_text(*value) : std::string();
+}
+
+bool parse_cell(const std::string& cell, std::string& value) {
+  value = cell;
+  return true;
+}
+bool parse_cell(const std::string& cell, int& value) {
+  const auto number = parse_int(cell);
+  if (!number || *number < 0 || *number > 1'000'000'000) return false;
+  value = static_cast<int>(*number);
+  return true;
+}
+bool parse_cell(const std::string& cell, double& value) {
+  const auto number = parse_double(cell);
+  if (!number || !std::isfinite(*number)) return false;
+  value = *number;
+  return true;
+}
+template <class Value>
+bool parse_cell(const std::string& cell, std::optional<Value>& value) {
+  if (cell.empty()) return true;
+  Value present{};
+  if (!parse_cell(cell, present)) return false;
+  value = present;
+  return true;
+}
+
+/// Shares of a whole are from 0 to 1 (ADD is a length in diameters), and nothing else that is measured is below zero; the
+/// value is that of any attribute.
+template <class Value>
+bool is_in_range(const std::string&, const Value&) {
+  return true;
+}
+bool is_in_range(const std::string& name, const std::optional<double>& value) {
+  static const std::set<std::string> shares = {"precision", "recall", "f1", "frame_share"};
+  return !value || name == "value" || (*value >= 0 && (shares.count(name) == 0 || *value <= 1));
+}
+
+}  // namespace
+
+const std::vector<std::string>& record_columns() {
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> names;
+    const StudyRecord record;
+    visit_columns(record, [&](const std::string& name, const auto&) { names.push_back(name); });
+    return names;
+  }();
+  return columns;
+}
+
+std::string record_line(const StudyRecord& record) {
+  std::vector<std::string> cells;
+  visit_columns(record, [&](const std::string&, const auto& field) { cells.push_back(cell_text(field)); });
+  return csv_line(cells);
+}
+
+std::vector<StudyRecord> read_records(const std::string& path) {
+  const CsvTable table = read_csv(path);
+  for (const std::string& name : record_columns())
+    if (table.column(name) < 0) throw IoError(path, "header", "the column " + name + " is missing");
+  std::vector<StudyRecord> records;
+  for (const auto& cells : table.rows) {
+    StudyRecord& record = records.emplace_back();
+    visit_columns(record, [&](const std::string& name, auto& field) {
+      const std::string& cell = cells[static_cast<std::size_t>(table.column(name))];
+      if (!parse_cell(cell, field) || !is_in_range(name, field))
+        throw IoError(path, "row " + std::to_string(records.size()),
+                      name + " is " + quoted(cell) + ", which is no value of that column");
+    });
+  }
+  return records;
+}
+
+}  // namespace corral

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "apps/study/manifest.h"
+
+#include <filesystem>
+#include <set>
+
+#include "apps/runtime/report.h"
+#include "apps/runtime/build_info.h"
+#include "grouping/registry.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+namespace fs = std::filesystem;
+
+Json to_json(const Experiment& experiment) {
+  const ExperimentInfo& info = experiment.info;
+  Json levels = Json::array(), filters = Json::object(), options = Json::object();
+  for (const StudyLevel& level : info.levels)
+    levels.push_back({{"label", level.label}, {"low", level.low}, {"high", level.high}});
+  for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.accepted;
+  for (const std::string& method : info.methods) {
+    const auto found = experiment.options.find(method);
+    options[method] = corral::to_json(
+        find_grouper(method).configure(found == experiment.options.end() ? OptionOverrides() : found->second).options);
+    options[method].erase("seed");  // every call has its own, derived from that of the experiment
+  }
+  return {{"name", info.name},
+          {"title", info.title},
+          {"figure", info.figure},
+          {"dataset", info.dataset},
+          {"attribute", info.attribute},
+          {"axis", info.axis},
+          {"levels", levels},
+          {"methods", info.methods},
+          {"threshold_pr", info.threshold_pr},
+          {"least_true_matches", info.least_true_matches},
+          {"filter", filters},
+          {"matching", corral::to_json(experiment.matching)},
+          {"keypoint_radii_pr", experiment.keypoint_radii_pr},
+          {"options", options},
+          {"repeats", experiment.repeats},
+          {"seed", experiment.seed},
+          {"dense", experiment.dense},
+          {"tables", experiment.tables}};
+}
+
+Json experiments_json(const WorkList& list) {
+  Json experiments = Json::array();
+  for (const Experiment& experiment : list.experiments) experiments.push_back(to_json(experiment));
+  return experiments;
+}
+
+/// Files by data set and pair, so that the same data in another folder are the same.
+Json inputs_json(const WorkList& list, const InputHashes& inputs) {
+  Json json = Json::object();
+  for (const WorkUnit& unit : list.units) {
+    const auto hash = [&](const std::string& file) { return hash_of(inputs, file); };
+    json[unit.dataset + "/" + unit.pair.name] = {
+        {"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
+  }
+  return json;
+}
+
+/// A pair that is matched in several ways is spoken of as the first experiment that takes it has it.
+Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
+  Json json = Json::object();
+  const auto absolute = [](const std::string& file) {
+    return file.empty() ? file : fs::absolute(file).lexically_normal().string();
+  };
+  for (const StudySample& sample : list.samples) {
+    const auto unit_number = static_cast<std::size_t>(sample.unit);
+    const WorkUnit& unit = list.units[unit_number];
+    const std::string name = unit.dataset + "/" + unit.pair.name;
+    if (json.contains(name)) continue;
+    Json& pair = json[name] = {{"source", absolute(unit.pair.source)},
+                               {"target", absolute(unit.pair.target)},
+                               {"truth", absolute(unit.pair.truth)},
+                               {"resolution", 0}};
+    if (unit_number >= results.size()) continue;
+    const UnitResult& result = results[unit_number];
+    pair["resolution"] = result.resolution;
+    if (result.source_points == 0) continue;  // failed, or not looked at
+    pair["source_points"] = result.source_points;
+    pair["source_keypoints"] = result.source_keypoints;
+  }
+  return json;
+}
+
+/// What two calls must agree on to be the same run.
+std::string hash_of_experiments(const WorkList& list) {
+  std::string text = experiments_json(list).dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
+  return content_hash(text);
+}
+std::string hash_of_inputs(const WorkList& list, const InputHashes& inputs) {
+  return content_hash(inputs_json(list, inputs).dump());
+}
+
+}  // namespace
+
+InputHashes hash_inputs(const WorkList& list) {
+  InputHashes inputs;
+  for (const WorkUnit& unit : list.units)
+    for (const std::string& file : {unit.pair.source, unit.pair.target, unit.pair.truth}) {
+      if (file.empty() || inputs.count(file)) continue;
+      try {
+        inputs[file] = content_hash(read_file(file));
+      } catch (const IoError&) {
+        inputs[file] = "";  // the pair will say so
+      }
+    }
+  return inputs;
+}
+
+std::string manifest_text(const WorkList& list, const InputHashes& inputs, const std::vector<UnitResult>& results,
+                          const std::string& command_line) {
+  const BuildInfo build = build_info();
+  const MachineInfo machine = machine_info();
+  return json_text(Json{{"format", "corral run 1"},
+                        {"is_finished", results.size() == list.units.size()},
+                        {"program",
+                         {{"version", build.version},
+                          {"commit", build.commit},
+                          {"compiler", build.compiler},
+                          {"flags", build.flags},
+                          {"libraries", build.libraries}}},
+                        {"machine",
+                         {{"processor", machine.processor},
+                          {"processors", machine.processors},
+                          {"memory_gb", machine.memory_gb},
+                          {"system", machine.system}}},
+                        {"command_line", command_line},
+                        {"experiments_hash", hash_of_experiments(list)},
+                        {"inputs_hash", hash_of_inputs(list, inputs)},
+                        {"experiments", experiments_json(list)},
+                        {"pairs", pairs_json(list, results)},
+                        {"inputs", inputs_json(list, inputs)}});
+}
+
+void check_same_run(const std::string& folder, const WorkList& list, const InputHashes& inputs) {
+  const std::string path = (fs::path(folder) / "manifest.json").string();
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  Json manifest;
+  std::string version, commit, experiments, data;
+  try {
+    manifest = Json::parse(read_file(path));
+    version = manifest.at("program").at("version");
+    commit = manifest.at("program").at("commit");
+    experiments = manifest.at("experiments_hash");
+    data = manifest.at("inputs_hash");
+  } catch (const Json::exception& error) {
+    throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
+  }
+  const BuildInfo build = build_info();
+  const std::string other = version != build.version                   ? "by version " + version + " of the program"
+                            : commit != build.commit                   ? "by commit " + commit + " of the program"
+                            : experiments != hash_of_experiments(list) ? "from other experiments or settings"
+                            : data != hash_of_inputs(list, inputs)     ? "from other data"
+                                                                       : "";
+  if (!other.empty())
+    throw IoError(path, "", "this run was made " + other + ", expected another folder for -o (or remove this one)");
+}
+
+}  // namespace corral

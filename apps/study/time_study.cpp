@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "apps/study/time_study.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <numeric>
+
+#include "apps/pair/read_surface.h"
+#include "apps/results/level_table.h"
+#include "apps/results/statistics.h"
+#include "apps/runtime/stopwatch.h"
+#include "apps/study/assemble.h"
+#include "apps/study/manifest.h"
+#include "grouping/registry.h"
+#include "io/csv_file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+#include "kernel/random.h"
+
+namespace corral {
+namespace {
+
+constexpr double kShortCall_ms = 1;
+constexpr int kCallsOfShort = 100;
+
+struct Table {
+  const WorkUnit* unit;
+  CorrespondenceSet matches;
+};
+
+/// The tables of the first units that have enough rows for the largest size, else those with most rows.
+std::vector<Table> find_tables(const WorkList& list, const InputHashes& inputs, const ContentStore& store) {
+  const Experiment& experiment = list.experiments.front();
+  double largest = 0;
+  for (const StudyLevel& level : experiment.info.levels) largest = std::max(largest, level.high);
+  std::vector<Table> tables;
+  const auto is_enough = [&](const Table& table) { return table.matches.size() >= largest; };
+  const auto wanted = static_cast<std::size_t>(experiment.tables);
+  for (const WorkUnit& unit : list.units) {
+    const Mesh source = read_surface(unit.pair.source), target = read_surface(unit.pair.target);
+    tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target).matches});
+    if (static_cast<std::size_t>(std::count_if(tables.begin(), tables.end(), is_enough)) == wanted) break;
+  }
+  std::stable_sort(tables.begin(), tables.end(), [&](const Table& a, const Table& b) {
+    return std::min<double>(a.matches.size(), largest) > std::min<double>(b.matches.size(), largest);
+  });
+  if (tables.size() > wanted) tables.resize(wanted);
+  return tables;
+}
+
+/// Times methods on one table.
+class Timer {
+ public:
+  Timer(const WorkUnit& unit, const CorrespondenceSet& matches) : matches_(matches) {
+    for (const GroupingTask& task : unit.tasks) {
+      if (task.repeat > 0) continue;  // the same call is repeated here
+      methods_.push_back(task.method);
+      calls_.push_back(find_grouper(task.method).configure(task.options).group);
+      Stopwatch watch;
+      selected_.push_back(static_cast<int>(calls_.back()(matches_).selected.size()));  // this also warms up
+      batch_.push_back(watch.lap_ms() < kShortCall_ms ? kCallsOfShort : 1);
+    }
+  }
+
+  std::size_t methods() const { return methods_.size(); }
+  const std::string& name(std::size_t method) const { return methods_[method]; }
+  int selected(std::size_t method) const { return selected_[method]; }
+
+  double time_ms(std::size_t method) const {
+    Stopwatch watch;
+    for (int call = 0; call < batch_[method]; ++call) calls_[method](matches_);
+    return watch.lap_ms() / batch_[method];
+  }
+
+ private:
+  const CorrespondenceSet& matches_;
+  std::vector<std::string> methods_;
+  std::vector<GroupFunction> calls_;
+  std::vector<int> selected_, batch_;
+};
+
+std::vector<TimeRow> time_rows(const Experiment& experiment, const std::vector<StudyRecord>& records) {
+  std::vector<TimeRow> rows;
+  for (const StudyLevel& level : experiment.info.levels)
+    for (const std::string& method : experiment.info.methods) {
+      std::vector<double> times;
+      for (const StudyRecord& record : records)
+        if (record.level == level.label && record.method == method) times.push_back(*record.time_ms);
+      if (times.empty()) continue;
+      const auto runs = static_cast<int>(times.size());
+      rows.push_back({experiment.info.name, experiment.info.dataset, level.label, method, runs, quantile_of(times, 0.5),
+                      mean_of(times), quantile_of(times, 0.25), quantile_of(times, 0.75)});
+    }
+  return rows;
+}
+
+std::string time_text(const std::vector<TimeRow>& rows) {
+  std::string text = csv_line({"experiment", "dataset", "level", "method", "runs", "median_ms", "mean_ms",
+                               "lower_quartile_ms", "upper_quartile_ms"});
+  for (const TimeRow& row : rows)
+    text +=
+        csv_line({row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs), to_text(row.median_ms),
+                  to_text(row.mean_ms), to_text(row.lower_quartile_ms), to_text(row.upper_quartile_ms)});
+  return text;
+}
+
+}  // namespace
+
+CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed) {
+  Indices rows(static_cast<std::size_t>(matches.size()));
+  std::iota(rows.begin(), rows.end(), 0);
+  RandomStream stream(seed);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    std::swap(rows[i], rows[i + static_cast<std::size_t>(stream.below(rows.size() - i))]);
+  rows.resize(static_cast<std::size_t>(count));
+  std::sort(rows.begin(), rows.end());
+  return select_rows(matches, rows);
+}
+
+std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
+                                    const std::function<void(const std::string& what)>& observer) {
+  const Experiment& experiment = list.experiments.front();
+  const InputHashes inputs = hash_inputs(list);
+  const std::filesystem::path folder(settings.run);
+  make_folder(folder.string());
+  const FolderLock lock(folder.string());
+  check_same_run(folder.string(), list, inputs);
+  const ContentStore store(settings.cache.empty() ? (folder / "cache").string() : settings.cache);
+  observer("matching");
+  std::vector<StudyRecord> records;
+  const auto& levels = experiment.info.levels;
+  for (const Table& table : find_tables(list, inputs, store))
+    for (std::size_t level = 0; level < levels.size(); ++level) {
+      const auto count = static_cast<int>(levels[level].low);
+      if (count > table.matches.size()) continue;
+      observer(levels[level].label + " matches");
+      const std::string& pair = table.unit->pair.name;
+      const CorrespondenceSet drawn =
+          draw_rows(table.matches, count, derive_seed(experiment.seed, pair + "/" + levels[level].label));
+      const Timer timer(*table.unit, drawn);
+      for (int repeat = 0; repeat < experiment.repeats; ++repeat)
+        for (std::size_t method = 0; method < timer.methods(); ++method) {
+          StudyRecord record;
+          record.experiment = experiment.info.name, record.dataset = experiment.info.dataset;
+          record.level = levels[level].label, record.pair = pair, record.method = timer.name(method);
+          record.repeat = repeat, record.value = count, record.status = "timed", record.matches = count;
+          record.selected = timer.selected(method), record.time_ms = timer.time_ms(method);
+          records.push_back(std::move(record));
+        }
+    }
+  if (records.empty())
+    throw IoError(
+        settings.run, "",
+        "no pair has as many matches as the smallest size, expected smaller levels or a smaller keypoint_radius_pr");
+  const std::vector<TimeRow> rows = time_rows(experiment, records);
+  const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
+  write_files({{(folder / "records.csv").string(), records_text(records)},
+               {(folder / "time.csv").string(), time_text(rows)},
+               {(folder / "manifest.json").string(), manifest_text(list, inputs, results, settings.command_line)}});
+  return rows;
+}
+
+}  // namespace corral

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/study/study.h"
+#include "apps/study/work_list.h"
+#include "kernel/correspondence_set.h"
+
+namespace corral {
+
+/// Times of one method on tables of one size.
+struct TimeRow {
+  std::string experiment, dataset, level, method;
+  int runs = 0;  ///< timed, over all tables
+  double median_ms = 0, mean_ms = 0, lower_quartile_ms = 0, upper_quartile_ms = 0;
+};
+
+/// Times the groupers of the one experiment of the list, which sweeps table_size, and writes a run's folder with records.csv
+/// and time.csv. Everything runs in the calling thread, the repeats of the methods by turns, each after a call to warm up. A
+/// call under a millisecond is repeated 100 times for one time. Tables are rows drawn from the matches of the first pairs that
+/// have enough of them, else of those that have most; a size that none has is left out.
+/// Throws    IoError as run_study does, or if no pair has a table of any of the sizes.
+std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
+                                    const std::function<void(const std::string& what)>& observer);
+
+/// So many rows of a table, drawn without repetition, in their order.
+CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed);
+
+}  // namespace corral

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// The answer of a unit as JSON: numbers read back as the same doubles.
+#include <nlohmann/json.hpp>
+
+#include "apps/study/evaluate_unit.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+std::optional<double> number_of(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional<double>(json.get<double>());
+}
+
+int count_of(const Json& json) {
+  constexpr std::int64_t kMost = 1'000'000'000;  // what records.csv takes
+  const std::int64_t count = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+  if (count < 0 || count > kMost) throw InvalidInput("unit_result", "count", json.dump(), "0 .. 1000000000");
+  return static_cast<int>(count);
+}
+
+std::vector<int> counts_of(const Json& json) {
+  std::vector<int> counts;
+  for (const Json& count : json) counts.push_back(count_of(count));
+  return counts;
+}
+
+Json to_json(const PoseScores& scores) {
+  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.mean_error_pr),
+          json_of(scores.rmse_pr), json_of(scores.add_share)};
+}
+
+PoseScores pose_scores_of(const Json& json) {
+  return {number_of(json.at(0)), number_of(json.at(1)), number_of(json.at(2)), number_of(json.at(3)),
+          number_of(json.at(4))};
+}
+
+Json to_json(const TaskResult& task) {
+  return {{"status", task.status},
+          {"selected", json_of(task.selected)},
+          {"correct", task.correct},
+          {"initial", to_json(task.initial)},
+          {"refined", to_json(task.refined)},
+          {"dense", to_json(task.dense)},
+          {"time_ms", json_of(task.time_ms)}};
+}
+
+TaskResult task_of(const Json& json) {
+  TaskResult task;
+  task.status = json.at("status");
+  if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
+  task.correct = counts_of(json.at("correct"));
+  task.initial = pose_scores_of(json.at("initial"));
+  task.refined = pose_scores_of(json.at("refined"));
+  task.dense = pose_scores_of(json.at("dense"));
+  task.time_ms = number_of(json.at("time_ms"));
+  return task;
+}
+
+UnitResult unit_of(const Json& json) {
+  UnitResult result;
+  result.failure = json.at("failure");
+  result.resolution = json.at("resolution");
+  result.source_points = count_of(json.at("source_points"));
+  result.source_keypoints = count_of(json.at("source_keypoints"));
+  result.matches = count_of(json.at("matches"));
+  result.has_truth = json.at("has_truth");
+  result.true_matches = counts_of(json.at("true_matches"));
+  for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
+  for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
+  for (const Json& oracle : json.at("oracles")) result.oracles.push_back(task_of(oracle));
+  if (!json.at("floor").is_null()) result.floor = task_of(json.at("floor"));
+  return result;
+}
+
+}  // namespace
+
+std::string unit_result_text(const UnitResult& result) {
+  Json tasks = Json::array(), oracles = Json::array(), frames = Json::array();
+  for (const TaskResult& task : result.tasks) tasks.push_back(to_json(task));
+  for (const TaskResult& oracle : result.oracles) oracles.push_back(to_json(oracle));
+  for (const auto& share : result.frame_share) frames.push_back(json_of(share));
+  return Json{{"failure", result.failure},
+              {"resolution", result.resolution},
+              {"source_points", result.source_points},
+              {"source_keypoints", result.source_keypoints},
+              {"matches", result.matches},
+              {"has_truth", result.has_truth},
+              {"true_matches", result.true_matches},
+              {"frame_share", frames},
+              {"tasks", tasks},
+              {"oracles", oracles},
+              {"floor", result.floor ? to_json(*result.floor) : Json(nullptr)}}
+             .dump(-1, ' ', false, Json::error_handler_t::replace) +
+         "\n";
+}
+
+std::optional<UnitResult> parse_unit_result(const std::string& text) {
+  try {
+    return unit_of(Json::parse(text));
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace corral

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "kernel/parallel.h"
+#include "kernel/surface/search/point_grid.h"
+
+namespace corral {
+
+// Finding the nearest neighbours of every point with a grid. Only sources include this.
+
+/// Calls attempt(slot, first, last, are_new, sure_squared, lanes) for every slot with ranges of slots that hold all points
+/// within a squared distance, and whether they are others than in the call before of this thread; `attempt` says whether
+/// that was enough. If it was not it is called again with more cells, and at last
+/// for a few with all slots. The slots for which that would take long (far apart, or crowded) are returned, ascending.
+class NearestSweep {
+ public:
+  explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}
+
+  template <class Attempt>
+  std::vector<int> run(const ParallelFor& parallel, const Attempt& attempt) const {
+    const int blocks = (grid_.cells() + kCellsPerBlock - 1) / kCellsPerBlock;
+    std::vector<std::vector<int>> left(static_cast<std::size_t>(blocks));
+    parallel(blocks, [&](int block) {
+      auto& slots = left[static_cast<std::size_t>(block)];
+      for (int slot = grid_.begin(block * kCellsPerBlock);
+           slot < grid_.begin(std::min(grid_.cells(), (block + 1) * kCellsPerBlock)); ++slot)
+        slots.push_back(slot);
+      vectorized([&](auto kind) {
+        for (const int reach : {1, 2, 4, 9}) search(kind, reach, attempt, slots);
+      });
+    });
+    std::vector<int> all;
+    for (const auto& slots : left) all.insert(all.end(), slots.begin(), slots.end());
+    if (static_cast<double>(all.size()) * grid_.size() > kMostWork) return all;
+    const SlotRange everything{0, grid_.size()};
+    parallel(static_cast<int>(all.size()), [&](int i) {
+      vectorized([&](auto kind) {
+        attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, true,
+                std::numeric_limits<double>::infinity(), kind);
+      });
+    });
+    return {};
+  }
+
+ private:
+  static constexpr int kCellsPerBlock = 256;
+  static constexpr int kCrowd = 4000;       // slots around a cell beyond which a tree is faster
+  static constexpr double kMostWork = 3e7;  // distances, some hundredths of a second
+
+  /// Keeps in `slots` those that are left.
+  template <class Kind, class Attempt>
+  CORRAL_INLINE void search(Kind kind, int reach, const Attempt& attempt, std::vector<int>& slots) const {
+    CellSweep sweep(grid_, reach);
+    std::vector<SlotRange> ranges;
+    std::vector<int> left;
+    int cell = slots.empty() ? 0 : grid_.cell_of(slots.front()) - 1;
+    int end = 0, crowd = 0;
+    bool are_new = false;
+    for (const int slot : slots) {
+      while (slot >= end) end = grid_.end(++cell), crowd = -1;
+      if (crowd < 0) {
+        ranges.clear();
+        sweep.around(cell, ranges);
+        crowd = 0;
+        are_new = true;
+        for (const SlotRange& range : ranges) crowd += range.end - range.begin;
+      }
+      const double sure = grid_.sure_radius(from_faces_[static_cast<std::size_t>(slot)], reach);
+      if (crowd > kCrowd || !attempt(slot, ranges.data(), ranges.data() + ranges.size(), are_new, sure * sure, kind))
+        left.push_back(slot);
+      are_new = false;
+    }
+    slots.swap(left);
+  }
+
+  const PointGrid& grid_;
+  const AlignedColumn from_faces_;  // by slot
+};
+
+/// point_resolution() of points whose neighbours were looked at (in resolution.cpp). `squares`: by slot, the squared distance
+/// to the nearest point in another place; infinite where it is not known.
+double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares);
+
+}  // namespace corral

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// The program as a user types it: help, groupers, info, perturb and match.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "grouping/registry.h"
+#include "kernel/surface/search/resolution.h"
+#include "tests/support/program.h"
+
+namespace corral {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
+using testing::keys_of;
+using testing::lines_in;
+using testing::Outcome;
+using ::testing::StartsWith;
+using testing::Workplace;
+
+void expect_ok(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST(Help, ListsTheCommandsAndTheExitStatuses) {
+  const Outcome help = Workplace().corral("--help");
+  expect_ok(help);
+  for (const char* command : {"run", "info", "match", "group", "refine", "score", "groupers", "perturb", "triangulate"})
+    EXPECT_THAT(help.out, HasSubstr("\n  " + std::string(command) + " "));
+  EXPECT_THAT(help.out, HasSubstr("Exit status: 0 done, 2 wrong usage, 3 bad input, 4"));
+}
+
+TEST(Help, EveryCommandHasAnExample) {
+  const Workplace place;
+  for (const char* command :
+       {"run", "info", "match", "group", "refine", "score", "groupers", "perturb", "triangulate"}) {
+    const Outcome help = place.corral(std::string(command) + " --help");
+    expect_ok(help);
+    EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr("\n  corral " + std::string(command) + " ")))
+        << command;
+  }
+}
+
+TEST(Groupers, ListsEveryMethodInThreeForms) {
+  const Workplace place;
+  const Outcome text = place.corral("groupers"), markdown = place.corral("groupers --markdown"),
+                json = place.corral("groupers --json");
+  for (const Outcome& outcome : {text, markdown, json}) expect_ok(outcome);
+  const auto list = json.json();
+  ASSERT_EQ(list.size(), groupers().size());
+  EXPECT_EQ(lines_in(markdown.out), groupers().size() + 2);
+  for (std::size_t i = 0; i < groupers().size(); ++i) {
+    const Grouper& grouper = groupers()[i];
+    EXPECT_THAT(text.out, HasSubstr(grouper.name + "  " + grouper.title + ": "));
+    EXPECT_THAT(markdown.out, HasSubstr("| `" + grouper.name + "` | " + grouper.title + " |"));
+    EXPECT_EQ(list[i]["method"], grouper.name);
+    EXPECT_THAT(keys_of(list[i]), ElementsAre("citation", "method", "options", "principle", "title"));
+    EXPECT_EQ(list[i]["options"].size(), grouper.options.size());
+    for (const auto& option : list[i]["options"])
+      EXPECT_THAT(keys_of(option), ElementsAre("accepted", "default", "meaning", "name", "paper", "unit"));
+  }
+}
+
+TEST(Groupers, ThePaperValueIsNullWhereItHasNone) {
+  const auto list = Workplace().corral("groupers --json").json();
+  ASSERT_EQ(list[2]["method"], "ransac");
+  EXPECT_EQ(list[2]["options"][0]["paper"], 10000);
+  EXPECT_EQ(list[2]["options"][2]["name"], "seed");
+  EXPECT_TRUE(list[2]["options"][2]["paper"].is_null());
+}
+
+TEST(Info, TellsWhatAMeshIs) {
+  const Workplace place;
+  write_mesh(place / "ball.ply", testing::icosphere(2));
+  place.put("square.off", "OFF\n6 2 0\n0 0 0\n1 0 0\n1 2 0\n0 2 0\n0 2 0\n5 5 0\n3 0 1 2\n3 0 2 3\n");
+  const Outcome outcome = place.corral("info --json ball.ply square.off");
+  expect_ok(outcome);
+  const auto list = outcome.json();
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0]["path"], "ball.ply");
+  EXPECT_EQ(list[0]["vertices"], 162);
+  EXPECT_EQ(list[0]["faces"], 320);
+  EXPECT_EQ(list[0]["components"], 1);
+  EXPECT_EQ(list[0]["boundary_edges"], 0);
+  EXPECT_EQ(list[0]["resolution"], point_resolution(testing::icosphere(2).vertices));
+  EXPECT_THAT(list[0]["warnings"], IsEmpty());
+  EXPECT_EQ(list[1]["boundary_edges"], 4);
+  EXPECT_EQ(list[1]["duplicates"], 1);
+  EXPECT_EQ(list[1]["isolated"], 2);
+  EXPECT_EQ(list[1]["extent"], nlohmann::json::parse("[5.0, 5.0, 0.0]"));
+  EXPECT_EQ(list[1]["warnings"].size(), 2U);
+  const Outcome text = place.corral("info ball.ply square.off");
+  expect_ok(text);
+  EXPECT_THAT(text.out, AllOf(StartsWith("ball.ply\n"), HasSubstr("\nsquare.off\n"), HasSubstr("warning")));
+}
+
+TEST(Info, WhatAMeshLacksIsNull) {
+  const Workplace place;
+  place.put("point.off", "OFF\n1 0 0\n1 2 3\n");
+  place.put("none.off", "OFF\n0 0 0\n");
+  const Outcome outcome = place.corral("info point.off none.off --json");
+  expect_ok(outcome);
+  for (const auto& mesh : outcome.json()) EXPECT_TRUE(mesh["resolution"].is_null());
+}
+
+TEST(Info, TellsOfTheOtherMeshesIfOneIsBad) {
+  const Workplace place;
+  write_mesh(place / "ball.ply", testing::icosphere(1));
+  const Outcome outcome = place.corral("info missing.ply ball.ply --json");
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_EQ(outcome.err, "corral: missing.ply: does not exist\n");
+  EXPECT_EQ(outcome.json()[0]["error"], "missing.ply: does not exist");
+  EXPECT_EQ(outcome.json()[1]["vertices"], 42);
+  EXPECT_EQ(place.corral("info missing.ply").status, 3);
+}
+
+TEST(Perturb, TheTruthFitsTheCopy) {
+  const Workplace place;
+  write_mesh(place / "model.ply", testing::bumpy_sphere(3, 2));
+  expect_ok(place.corral("perturb model.ply -o exact.ply --truth truth.txt"));
+  expect_ok(place.corral("perturb model.ply -o noisy.ply --truth same_truth.txt --noise-pr 0.5"));
+  const Mesh model = read_mesh(place / "model.ply"), exact = read_mesh(place / "exact.ply"),
+             noisy = read_mesh(place / "noisy.ply");
+  const Points moved = read_transform(place / "truth.txt").apply(model.vertices);
+  EXPECT_LT((moved - exact.vertices).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(exact.triangles, model.triangles);
+  EXPECT_EQ(place.text("truth.txt"), place.text("same_truth.txt")) << "the motion does not depend on the noise";
+  const double deviation = (noisy.vertices - moved).norm() / std::sqrt(static_cast<double>(moved.size()));
+  EXPECT_NEAR(deviation / point_resolution(model.vertices), 0.5, 0.03);
+  EXPECT_GT((moved - model.vertices).rowwise().norm().maxCoeff(), 0.5) << "it does move";
+}
+
+TEST(Perturb, TheSeedDecides) {
+  const Workplace place;
+  write_mesh(place / "model.ply", testing::icosphere(2));
+  for (const char* run : {"--seed 1 -o a.ply", "--seed 1 -o b.ply", "--seed 2 -o c.ply"})
+    expect_ok(place.corral("perturb model.ply --noise-pr 0.1 " + std::string(run)));
+  EXPECT_EQ(place.text("a.ply"), place.text("b.ply"));
+  EXPECT_NE(place.text("a.ply"), place.text("c.ply"));
+}
+
+TEST(Match, MakesATableAndAReport) {
+  const Workplace place;
+  place.put_pair();
+  const Outcome printed = place.corral("match model.ply copy.ply");
+  expect_ok(printed);
+  expect_ok(place.corral("match model.ply copy.ply -o matches.csv"));
+  EXPECT_EQ(printed.out, place.text("matches.csv"));
+  const Outcome reported = place.corral("match model.ply copy.ply -o again.csv --json -v");
+  EXPECT_EQ(reported.status, 0);
+  EXPECT_THAT(reported.err,
+              AllOf(HasSubstr("source: 2562 points"), HasSubstr("target: "), HasSubstr(" matches\nstage ")));
+  EXPECT_EQ(place.text("again.csv"), place.text("matches.csv"));
+  const CorrespondenceSet matches = read_matches(place / "matches.csv");
+  const auto report = reported.json();
+  EXPECT_THAT(keys_of(report), IsSupersetOf({"resolution", "source", "target", "matches", "hints"}));
+  EXPECT_EQ(report["matches"], matches.size());
+  EXPECT_EQ(report["resolution"], matches.resolution);
+  EXPECT_EQ(report["source"]["descriptors"], matches.size());
+  EXPECT_GT(matches.size(), 10);
+  const Mesh model = read_mesh(place / "model.ply");
+  EXPECT_EQ(matches.source_centroid.value(), vertex_centroid(model));
+  EXPECT_EQ(matches.source_points.row(0), model.vertices.row(matches.source_keypoints[0]));
+}
+
+TEST(Match, AFlatSurfaceGivesAnEmptyTableAndAHint) {
+  const Workplace place;
+  write_mesh(place / "flat.ply", testing::grid(20, 20));
+  const Outcome outcome = place.corral("match flat.ply flat.ply");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("hint: no keypoint on the source"), HasSubstr("a flat surface has none")));
+  place.put("matches.csv", outcome.out);
+  EXPECT_EQ(read_matches(place / "matches.csv").size(), 0);
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+
+#include "apps/results/run_folder.h"
+#include "apps/runtime/stopwatch.h"
+#include "apps/study/study.h"
+#include "kernel/number_text.h"
+#include "tests/support/small_study.h"
+
+namespace corral {
+namespace {
+
+using namespace testing;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class Evaluate : public ::testing::Test {
+ protected:
+  Evaluate() {
+    put_small_dataset(place_);
+    place_.put("small.toml", kSmallExperiment);
+  }
+  Outcome evaluate(const std::string& rest) const { return place_.corral("evaluate small.toml --data data " + rest); }
+  /// Everything of a run that does not depend on the clock.
+  std::map<std::string, std::string> content(const std::string& run) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(place_ / (run + "/selections")))
+      if (entry.is_regular_file())
+        files[std::filesystem::relative(entry.path(), place_ / run).string()] = text_of(entry.path().string());
+    files["summary.csv"] = place_.text(run + "/summary.csv");
+    for (const auto& [name, pair] : read_run(place_ / run).pairs)
+      files[name] = std::to_string(*pair.source_points) + " " + std::to_string(*pair.source_keypoints);
+    files["records.csv"] = without_times(place_ / (run + "/records.csv"));
+    return files;
+  }
+  const Workplace place_;
+};
+
+TEST_F(Evaluate, WritesARunThatReadsBack) {
+  const Outcome outcome = evaluate("-o run --jobs 2");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 0 failed"));
+  EXPECT_THAT(outcome.out, HasSubstr("precision"));
+  const RunFolder run = read_run(place_ / "run");
+  EXPECT_EQ(run.experiments.at(0).levels.size(), 3u);
+  EXPECT_EQ(run.records.size(), 6u * (7 + 1 + 2));  // seven methods, one of them twice, and the bounds
+  ASSERT_EQ(run.pairs.size(), 6u);
+  for (const auto& [name, pair] : run.pairs) {
+    EXPECT_GT(pair.resolution, 0);
+    EXPECT_TRUE(std::filesystem::exists(pair.source));
+  }
+  for (const StudyRecord& record : run.records) {
+    EXPECT_EQ(record.level, to_text(*record.value));
+    if (record.method == "oracle") {
+      EXPECT_EQ(record.precision, 1);
+    }
+    if (record.method == "floor") {
+      EXPECT_EQ(record.recall, 1);
+    }
+    if (record.selection.empty()) continue;
+    const PairSelections selections = read_selections(place_ / "run/" + record.selection);
+    const Indices& selected = selections.selected.at(record.method);
+    EXPECT_EQ(static_cast<int>(selected.size()), *record.selected);
+    int correct = 0;
+    for (const int row : selected) correct += selections.residual_pr[static_cast<std::size_t>(row)] <= 4;
+    EXPECT_EQ(correct, *record.correct);
+    const std::string poses = record.selection.substr(0, record.selection.size() - 4) + ".poses.csv";
+    EXPECT_FALSE(read_poses(place_ / "run/" + poses).empty());
+  }
+  const auto manifest = nlohmann::json::parse(place_.text("run/manifest.json"));
+  EXPECT_TRUE(manifest["is_finished"]);
+  EXPECT_EQ(manifest["inputs"]["b3r/m1-0.05"]["source"].get<std::string>().size(), 32u);
+  EXPECT_EQ(manifest["experiments"][0]["options"]["gc"]["tolerance_pr"], 3);
+  EXPECT_EQ(manifest["program"]["libraries"]["Eigen"].get<std::string>().front(), '3');
+  EXPECT_THAT(manifest["command_line"].get<std::string>(), StartsWith("corral evaluate small.toml"));
+}
+
+// One record is what 'corral run' says of the pair.
+TEST_F(Evaluate, AgreesWithRun) {
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  const auto methods =
+      place_
+          .corral(
+              "run data/b3r/m2.ply data/b3r/m2-0.25.ply --truth data/b3r/m2-0.25.txt --json --detector "
+              "uniform --keypoint-radius-pr 2.5 --support-radius-pr 8 --resolution source -o ran")
+          .json()["methods"];
+  const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
+  const StudyPair pair = read_run(place_ / "run").pairs.at("b3r/m2-0.25");
+  EXPECT_EQ(*pair.source_points, report["source"]["points"]);
+  EXPECT_EQ(*pair.source_keypoints, report["source"]["keypoints"]);
+  int compared = 0;
+  for (const StudyRecord& record : read_run(place_ / "run").records)
+    for (const auto& method : methods)
+      if (record.pair == "m2-0.25" && record.method == method["method"] && record.method != "ransac") {
+        ++compared;
+        EXPECT_EQ(*record.precision, method["precision"]);
+        EXPECT_EQ(*record.refined.rmse_pr, method["rmse_pr"]) << method;
+        EXPECT_EQ(*record.refined.mean_error_pr, method["mean_error_pr"]) << method;
+      }
+  EXPECT_EQ(compared, 6);
+}
+
+TEST_F(Evaluate, JobsCacheAndOrderDoNotMatter) {
+  ASSERT_EQ(evaluate("-o one --jobs 1 --cache shared").status, 0);
+  ASSERT_EQ(evaluate("-o two --jobs 2").status, 0);
+  ASSERT_EQ(evaluate("-o cached --jobs 2 --cache shared").status, 0);
+  EXPECT_EQ(content("one"), content("two"));
+  EXPECT_EQ(content("one"), content("cached"));
+}
+
+// Killed at some moments and called again, the run ends as if nothing had been.
+TEST_F(Evaluate, GoesOnAfterBeingKilled) {
+  Stopwatch watch;
+  ASSERT_EQ(evaluate("-o whole").status, 0);
+  const double span = watch.lap_ms() / 1000;
+  int killed = 0;
+  for (int call = 1; call <= 8; ++call) {
+    const std::string line = "cd '" + (place_ / "") + "' && timeout -s KILL " + std::to_string(span * call / 16) +
+                             " '" CORRAL_PROGRAM "' evaluate small.toml --data data -o cut --jobs 2 >log 2>&1";
+    killed += std::system(line.c_str()) != 0;
+  }
+  EXPECT_GT(killed, 0);
+  const Outcome outcome = evaluate("-o cut --jobs 1");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(content("cut"), content("whole"));
+}
+
+// A unit that is there is not done again; one that is damaged, or half written, is.
+TEST_F(Evaluate, WhatIsDoneStaysAndWhatIsDamagedIsDoneAgain) {
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  const auto before = content("run");
+  std::vector<std::filesystem::path> units;
+  for (const auto& entry : std::filesystem::directory_iterator(place_ / "run/units")) units.push_back(entry.path());
+  ASSERT_EQ(units.size(), 6u);
+  const std::string other = text_of(units[1].string());
+  put_text(units[0].string(), text_of(units[0].string()).substr(0, 40));
+  put_text(units[2].string(), "{}");
+  put_text(units[3].string(),
+           std::regex_replace(text_of(units[3].string()), std::regex("\"correct\":\\[[0-9]+\\]"), "\"correct\":[]"));
+  put_text(units[4].string(), std::regex_replace(text_of(units[4].string()), std::regex("\"selected\":[0-9]+"),
+                                                 "\"selected\":2147483647"));
+  put_text(units[5].string(), std::regex_replace(text_of(units[5].string()), std::regex("\"correct\":\\[[0-9]+"),
+                                                 "\"correct\":[999999999"));
+  put_text(place_ / "run/units/half.json.Ab12Cd", "{");
+  put_text(place_ / "run/cache/0123.Ab12Cd", "half");
+  const std::string times = place_.text("run/records.csv");
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  EXPECT_EQ(content("run"), before);
+  EXPECT_EQ(text_of(units[1].string()), other);
+  EXPECT_NE(place_.text("run/records.csv"), times);  // five units have new times
+  EXPECT_FALSE(std::filesystem::exists(place_ / "run/units/half.json.Ab12Cd"));
+  EXPECT_FALSE(std::filesystem::exists(place_ / "run/cache/0123.Ab12Cd"));
+}
+
+TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
+  std::filesystem::remove(place_ / "data/b3r/m1-0.25.ply");
+  place_.put("data/b3r/m2-0.45.ply", "ply\nformat ascii 1.0\n");
+  const Outcome outcome = evaluate("-o run");
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 2 failed (records.csv says why); the run is in run"));
+  int failed = 0;
+  for (const StudyRecord& record : read_run(place_ / "run").records) {
+    if (record.pair != "m1-0.25") continue;
+    ++failed;
+    EXPECT_THAT(record.status, AllOf(StartsWith("failed: "), HasSubstr("m1-0.25.ply"), HasSubstr("does not exist")));
+    EXPECT_FALSE(record.matches || record.precision || record.selected);
+  }
+  EXPECT_EQ(failed, 10);
+  const CsvTable summary = read_csv(place_ / "run/summary.csv");
+  for (const auto& row : summary.rows) {
+    const bool has_failure = row[2] == "0.25" || row[2] == "0.45";
+    EXPECT_EQ(row[static_cast<std::size_t>(summary.column("failed"))], has_failure ? "1" : "0");
+    EXPECT_EQ(row[static_cast<std::size_t>(summary.column("pairs"))], has_failure ? "1" : "2");
+  }
+  EXPECT_EQ(evaluate("-o run").status, 4);  // it stays so
+}
+
+TEST_F(Evaluate, APairWithoutTruthIsGroupedButNotScored) {
+  place_.put("data/b3r/pairs.csv", replaced(place_.text("data/b3r/pairs.csv"), "m1-0.05.txt", ""));
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  for (const StudyRecord& record : read_run(place_ / "run").records)
+    if (record.pair == "m1-0.05") {
+      EXPECT_TRUE(record.selected);
+      EXPECT_FALSE(record.true_matches || record.precision || record.refined.mean_error_pr);
+    }
+  const CsvTable summary = read_csv(place_ / "run/summary.csv");
+  EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "1");
+}
+
+TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  place_.put("small.toml", std::string(kSmallExperiment) + "\n[options.gc]\ntolerance_pr = 2\n");
+  Outcome outcome = evaluate("-o run");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("other experiments"), HasSubstr("another folder")));
+  place_.put("small.toml", kSmallExperiment);
+  EXPECT_EQ(evaluate("-o run --dense").status, 3);
+  EXPECT_EQ(evaluate("-o run").status, 0);
+  place_.put("data/b3r/m1-0.05.txt", replaced(place_.text("data/b3r/m1-0.05.txt"), "\n", " \n"));
+  outcome = evaluate("-o run");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("other data"));
+}
+
+TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
+  std::filesystem::create_directories(place_ / "run");
+  {
+    const FolderLock lock(place_ / "run");
+    const Outcome outcome = evaluate("-o run");
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("another call"));
+  }
+  EXPECT_EQ(evaluate("-o run").status, 0);
+}
+
+TEST_F(Evaluate, DenseFillsItsOwnColumns) {
+  ASSERT_EQ(evaluate("-o run --dense").status, 0);
+  for (const StudyRecord& record : read_run(place_ / "run").records)
+    EXPECT_EQ(record.dense.mean_error_pr.has_value(), record.refined.mean_error_pr.has_value())
+        << record.pair << record.method;
+}
+
+// The threshold is for scoring alone: the same selections at all of them, and no precision that falls as it rises.
+TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
+  place_.put("small.toml",
+             replaced(replaced(kSmallExperiment, "noise_pr", "threshold_pr"), "[0.05, 0.25, 0.45]", "[0.5, 1, 2, 8]"));
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  std::map<std::string, StudyRecord> last;
+  int compared = 0;
+  for (const StudyRecord& record : read_run(place_ / "run").records) {
+    const std::string key = record.pair + record.method + std::to_string(record.repeat);
+    const auto found = last.find(key);
+    if (found != last.end() && record.method != "oracle") {
+      ++compared;
+      EXPECT_EQ(found->second.selected, record.selected);
+      EXPECT_LE(*found->second.correct, *record.correct);
+      EXPECT_LE(*found->second.true_matches, *record.true_matches);
+    }
+    last[key] = record;
+  }
+  EXPECT_EQ(compared, 3 * 6 * 9);
+  for (const StudyRecord& record : read_run(place_ / "run").records)
+    if (record.method == "oracle") {
+      EXPECT_EQ(record.selected, record.true_matches);
+    }
+}
+
+TEST_F(Evaluate, NumbersOfMatchesAreBinnedAsTheyTurnOut) {
+  place_.put("small.toml", replaced(replaced(replaced(kSmallExperiment, "noise_pr", "matches"),
+                                             "levels = [0.05, 0.25, 0.45]", "bins = [[10, 100], [100, 1000]]"),
+                                    "keypoint_radius_pr = 2.5", "keypoint_radii_pr = [2.5, 6, 30]"));
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  std::map<std::string, int> levels;
+  for (const StudyRecord& record : read_run(place_ / "run").records) {
+    EXPECT_EQ(record.level, *record.matches < 100 ? "[10,100)" : "[100,1000]");
+    EXPECT_EQ(record.value, *record.matches);
+    levels[record.level] += record.method == "gc";
+  }
+  EXPECT_EQ(levels["[10,100)"] + levels["[100,1000]"], 12);  // the tables of the largest radius are in no bin
+  EXPECT_GT(levels["[10,100)"], 0);
+  EXPECT_GT(levels["[100,1000]"], 0);
+}
+
+TEST_F(Evaluate, TimesAreTakenAlone) {
+  place_.put("time.toml", replaced(replaced(replaced(kSmallExperiment, "noise_pr", "table_size"), "[0.05, 0.25, 0.45]",
+                                            "[20, 60, 100000]"),
+                                   "small", "mytime"));
+  EXPECT_THAT(place_.corral("evaluate time.toml small.toml --data data -o run").err, HasSubstr("taken alone"));
+  EXPECT_EQ(place_.corral("evaluate time.toml --data data -o run --jobs 2").status, 2);
+  const Outcome outcome = place_.corral("evaluate time.toml --data data -o run");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "the run is in run\n");
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("upper quartile"), Not(HasSubstr("quartiles"))));
+  const CsvTable times = read_csv(place_ / "run/time.csv");
+  EXPECT_EQ(times.rows.size(), 14u);  // no table has 100000 rows
+  EXPECT_TRUE(nlohmann::json::parse(place_.text("run/manifest.json"))["is_finished"]);
+  const RunFolder run = read_run(place_ / "run");
+  EXPECT_EQ(run.records.size(), 28u);
+  for (const StudyRecord& record : run.records) {
+    EXPECT_GT(*record.time_ms, 0);
+    EXPECT_EQ(to_text(*record.matches), record.level);
+  }
+}
+
+TEST_F(Evaluate, SaysWhatIsWrongWithTheCall) {
+  EXPECT_EQ(evaluate("-o run --jobs 0").status, 2);
+  const Outcome unknown = place_.corral("evaluate nose --data data -o run");
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'noise'?"));
+  EXPECT_THAT(place_.corral("evaluate overlap --data data -o run").err, HasSubstr("it has b3r"));
+  EXPECT_FALSE(std::filesystem::exists(place_ / "run"));
+  EXPECT_THAT(place_.corral("evaluate --help").out, AllOf(HasSubstr("tuning-spectral"), HasSubstr("Examples")));
+}
+
+// A real cluttered scene: few right matches among many, which all groupers must live with.
+TEST(EvaluateRealData, AClutteredScene) {
+  const char* folder = std::getenv("CORRAL_REAL_DATA");
+  if (!folder) GTEST_SKIP() << "CORRAL_REAL_DATA does not name the folder of the real data sets";
+  const Workplace place;
+  const std::string root = std::string(folder) + "/u3or/";
+  std::filesystem::create_directories(place / "u3or");
+  place.put("u3or/dataset.toml", "name = \"u3or\"\n");
+  place.put("u3or/pairs.csv", "pair,source,target,truth,occlusion\nparasaurolophus-rs1," + root +
+                                  "models/parasaurolophus_low_normals2.ply," + root + "scenes/rs1_normals.ply," + root +
+                                  "gt/parasaurolophus-rs1.xf,67.8\n");
+  const Outcome outcome = place.corral("evaluate occlusion --data . -o run");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const RunFolder run = read_run(place / "run");
+  EXPECT_EQ(run.records.size(), 9u);
+  for (const StudyRecord& record : run.records) {
+    EXPECT_EQ(record.level, "[65,70)");
+    EXPECT_GT(*record.true_matches, 0);
+    EXPECT_LT(*record.true_matches, *record.matches / 10);
+  }
+}
+
+}  // namespace
+}  // namespace corral

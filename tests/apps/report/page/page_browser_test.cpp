@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+// The page opened from disk and used as a reader uses it: mouse, keys, and a look at what is drawn.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "apps/report/page.h"
+#include "io/file.h"
+#include "kernel/surface/mesh/perturbation.h"
+#include "kernel/surface/search/resolution.h"
+#include "tests/apps/report/page/browser.h"
+#include "tests/support/meshes.h"
+#include "tests/support/study_run.h"
+
+namespace corral::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Json = nlohmann::json;
+
+const char* const kTitle = "Noise </script><script>alert('no')</script> \"&amp;\" \xc3\xa4";
+
+/// What all tests share: a run, its page on disk, and a browser.
+struct Desk {
+  Desk() {
+    ExperimentInfo experiment{"noise",
+                              kTitle,
+                              "a",
+                              "spheres",
+                              "noise_pr",
+                              "noise (pr)",
+                              {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.4", 0.4, 0.4}},
+                              {"ss", "nnsr", "gc"},
+                              4,
+                              1};
+    std::vector<StudyCase> cases;
+    for (const auto& [level, noise] : {std::pair<std::string, double>{"0.1", 0.1}, {"0.4", 0.4}})
+      for (const int seed : {1, 2}) {
+        const Mesh sphere = bumpy_sphere(4, static_cast<std::uint64_t>(seed));
+        const RigidTransform truth = random_motion(sphere, static_cast<std::uint64_t>(seed));
+        const Mesh noisy = add_gaussian_noise(sphere, noise * point_resolution(sphere.vertices), 3);
+        cases.push_back({level, "Ball" + std::to_string(seed) + (noise < 0.2 ? "-low" : "-high"), sphere,
+                         move_mesh(noisy, truth), truth});
+      }
+    cases.push_back({"0.2", "broken", {}, {}, {}});  // the level in the middle is a gap
+    put_run(folder / "run", experiment, cases);
+    run = read_run(folder / "run");
+    PageOptions options;
+    options.pairs_in_3d = 3;
+    options.verdicts = R"([{"id": "C1", "verdict": "holds", "margin": 0.02, "statement": "<b>RANSAC</b> leads"},
+                           {"id": "C2", "verdict": "undecidable", "margin": null, "statement": "no data"}])";
+    write_file(folder / "page.html", report_page({run}, options));
+  }
+
+  ScratchFolder folder;
+  RunFolder run;
+  Browser browser{800, 600};
+};
+
+class PageInBrowser : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (missing().empty()) desk_ = std::make_unique<Desk>();
+  }
+  static void TearDownTestSuite() { desk_.reset(); }
+
+  void SetUp() override {
+    if (!desk_) GTEST_SKIP() << missing() << " is not installed";
+    browser_ = &desk_->browser;
+    run_ = desk_->run;
+    browser_->open(desk_->folder / "page.html");
+    wait_for_drawing();
+  }
+  void TearDown() override {
+    if (!desk_) return;
+    EXPECT_THAT(browser_->complaints(), IsEmpty());
+  }
+
+  static std::string missing() {
+    for (const char* script : {"three/three.min.js", "chart.js/chart.min.js"})
+      if (!std::filesystem::exists(std::string("/usr/share/javascript/") + script)) return script;
+    return Browser::is_installed() ? "" : "chromium";
+  }
+
+  Json js(const std::string& expression) { return browser_->evaluate(expression); }
+
+  /// The middle of what a selector finds, scrolled into the window.
+  std::pair<double, double> place_of(const std::string& selector) {
+    const Json place = js("(() => { const e = document.querySelector('" + selector +
+                          "'); e.scrollIntoView({behavior: 'instant', block: 'center'}); const r = "
+                          "e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()");
+    return {place[0], place[1]};
+  }
+  void click(const std::string& selector) {
+    const auto [x, y] = place_of(selector);
+    browser_->click(x, y);
+  }
+  /// Where a point of a panel is in the window.
+  std::pair<double, double> point(int chart, int series, int column) {
+    const Json place =
+        js("(() => { const c = panels.charts[" + std::to_string(chart) +
+           "]; c.canvas.scrollIntoView({behavior: 'instant', block: 'center'}); const r = "
+           "c.canvas.getBoundingClientRect(), p = c.getDatasetMeta(" +
+           std::to_string(series) + ").data[" + std::to_string(column) + "]; return [r.x + p.x, r.y + p.y]; })()");
+    return {place[0], place[1]};
+  }
+  void choose(const std::string& select, const std::string& value) {
+    js("(() => { const s = document.getElementById('" + select + "'); s.value = '" + value +
+       "'; s.dispatchEvent(new Event('change')); })()");
+  }
+  void wait_for_drawing() { js("new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r(1))))"); }
+
+  /// Pixels of the picture by what they show: the two surfaces, right and wrong matches; of the left or right half.
+  Json pixels(const std::string& half = "") {
+    wait_for_drawing();
+    return js(R"js((() => {
+      const canvas = document.getElementById('view'), gl = canvas.getContext('webgl2') || canvas.getContext('webgl');
+      const width = gl.drawingBufferWidth, height = gl.drawingBufferHeight, all = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+      const counts = {source: 0, target: 0, right: 0, wrong: 0, sum: 0}, half = ')js" +
+              half + R"js(';
+      for (let i = 0; i < all.length; i += 4) {
+        const x = i / 4 % width, r = all[i], g = all[i + 1], b = all[i + 2];
+        const elsewhere = (half === 'left' && x >= width / 2) || (half === 'right' && x < width / 2);
+        if (elsewhere || (r > 215 && g > 220 && b > 225)) continue;
+        counts.sum = (counts.sum * 31 + r + 3 * g + 7 * b) % 1000003;
+        if (g > r + 60 && g > b + 12) ++counts.right;
+        else if (r > g + 60 && r > b + 80) ++counts.wrong;
+        else if (b > r + 15) ++counts.source;
+        else if (r > b + 8) ++counts.target;
+      }
+      return counts; })())js");
+  }
+
+  static std::unique_ptr<Desk> desk_;
+  RunFolder run_;
+  Browser* browser_ = nullptr;
+};
+std::unique_ptr<Desk> PageInBrowser::desk_;
+
+TEST_F(PageInBrowser, PanelsShowTheSummary) {
+  EXPECT_EQ(js("panels.charts.length"), 4);
+  EXPECT_EQ(js("panels.charts.map(c => c.metric)"), Json({"precision", "recall", "f1", "success_5pr"}));
+  double sum = 0;
+  int count = 0;
+  for (const StudyRecord& record : run_.records)
+    if (record.level == "0.4" && record.method == "nnsr") sum += *record.recall, ++count;
+  ASSERT_EQ(count, 2);
+  const Json series = js("panels.charts[1].data.datasets[1]");
+  EXPECT_EQ(series["label"], "nnsr");
+  EXPECT_NEAR(series["data"][2], sum / 2, 1e-5);
+  EXPECT_TRUE(series["data"][1].is_null());  // a gap, not 0
+  EXPECT_EQ(js("panels.charts[1].data.labels"), Json({"0.1", "0.2", "0.4"}));
+  EXPECT_EQ(js("new Set(panels.charts[0].data.datasets.slice(0, 3).map(d => d.borderColor)).size"), 3);
+  EXPECT_EQ(js("new Set(panels.charts[0].data.datasets.slice(0, 3).map(d => d.pointStyle + d.rotation)).size"), 3);
+  EXPECT_THAT(js("document.querySelector('#panels h3').textContent").get<std::string>(), HasSubstr(kTitle));
+  EXPECT_THAT(js("document.querySelector('#panels .note').textContent").get<std::string>(),
+              HasSubstr("3 failures"));  // of three groupers
+
+  const auto [x, y] = point(1, 1, 2);
+  browser_->move(x + 1, y + 1);
+  wait_for_drawing();  // the panels answer with the next frame
+  EXPECT_EQ(js("panels.charts[1].tooltip.opacity"), 1);
+  const Json lines = js("panels.charts[1].tooltip.body.flatMap(b => b.lines)");
+  EXPECT_THAT(lines.dump(), HasSubstr(js("'recall ' + panels.charts[1].data.datasets[1].data[2].toFixed(3)")));
+  EXPECT_THAT(lines.dump(), HasSubstr("pairs 2, excluded 0, empty 0, failed 0"));
+
+  click("#legend button:nth-of-type(2)");
+  EXPECT_EQ(js("panels.charts.map(c => c.isDatasetVisible(1))"), Json({false, false, false, false}));
+  EXPECT_EQ(js("document.querySelector('#legend button:nth-of-type(2)').ariaPressed"), "false");
+  click("#legend button:nth-of-type(2)");
+  EXPECT_EQ(js("panels.charts.map(c => c.isDatasetVisible(1))"), Json({true, true, true, true}));
+  EXPECT_EQ(js("document.querySelectorAll('#findings-table tbody tr').length"), 2);
+  EXPECT_EQ(js("document.querySelectorAll('#findings-table b').length"), 0);
+  EXPECT_THAT(js("document.getElementById('run-facts').textContent").get<std::string>(),
+              HasSubstr("corral evaluate noise"));
+}
+
+TEST_F(PageInBrowser, PanelsZoomAndAreReachedByKeys) {
+  const auto [x0, y0] = point(0, 0, 0);
+  const auto [x1, y1] = point(0, 0, 2);
+  browser_->drag(x0 - 2, y0 - 20, x1 - 20, y0 + 30);
+  const Json zoomed = js("[panels.charts[0].scales.y.min, panels.charts[0].scales.y.max]");
+  EXPECT_GT(zoomed[0], 0.3);
+  EXPECT_LT(zoomed[1].get<double>() - zoomed[0].get<double>(), 0.5);
+  js("panels.charts[0].canvas.focus()");
+  browser_->press("Escape");
+  EXPECT_EQ(js("[panels.charts[0].scales.y.min, panels.charts[0].scales.y.max]"), Json({-0.03, 1.03}));
+
+  browser_->press("ArrowRight");
+  browser_->press("ArrowDown");
+  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("NNSR at 0.1, precision"));
+  browser_->press("ArrowRight");
+  EXPECT_THAT(js("byId('announcement').textContent").get<std::string>(), HasSubstr("NNSR at 0.2, pairs 0"));
+  browser_->press("ArrowRight");
+  browser_->press("Enter");
+  EXPECT_EQ(js("[pairView.state.level, byId('left-method').value]"), Json({"0.4", "nnsr"}));
+}
+
+TEST_F(PageInBrowser, TheTableSortsFiltersAndOpensPairs) {
+  const auto column = [&](int number) {
+    return js("[...document.querySelectorAll('#records-table tbody tr')].map(r => r.cells[" + std::to_string(number) +
+              "].textContent)");
+  };
+  EXPECT_EQ(js("document.querySelectorAll('#records-table tbody tr').length"), 23);  // 4 pairs x 5, and 3 that failed
+  const int f1 = js("[...document.querySelectorAll('#records-table th')].findIndex(h => h.textContent === 'F1')");
+  const std::string header = "#records-table th:nth-of-type(" + std::to_string(f1 + 1) + ") button";
+  const auto values = [&] {
+    std::vector<double> numbers;
+    const Json cells = column(f1);
+    for (std::size_t i = 0; i < 20; ++i) numbers.push_back(std::stod(cells[i].get<std::string>()));
+    for (std::size_t i = 20; i < 23; ++i) EXPECT_EQ(cells[i], "\xe2\x80\x93");  // what is absent is last, either way
+    return numbers;
+  };
+  click(header);
+  std::vector<double> sorted = values();
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  EXPECT_LT(sorted.front(), sorted.back());
+  browser_->press("Enter");  // the header has the focus
+  sorted = values();
+  EXPECT_TRUE(std::is_sorted(sorted.rbegin(), sorted.rend()));
+  EXPECT_EQ(js("document.querySelectorAll('#records-table th')[" + std::to_string(f1) + "].ariaSort"), "descending");
+
+  click("#filter-pair");
+  browser_->type("bALL2-h");
+  EXPECT_EQ(column(2), Json({"Ball2-high", "Ball2-high", "Ball2-high", "Ball2-high", "Ball2-high"}));
+  choose("filter-method", "gc");
+  EXPECT_EQ(column(2).size(), 1u);
+  js("document.querySelector('#records-table td button').focus()");
+  browser_->press("Enter");
+  EXPECT_EQ(js("document.activeElement.id"), "pair-title");
+  EXPECT_EQ(js("document.querySelectorAll('#records-table tr.chosen').length"), 1);
+  // Three of four pairs are in 3D: one that is not says so.
+  click("#reset-filters");
+  const Json absent = js("records.findIndex(r => r.selection && !pairView.has(r))");
+  js("document.querySelectorAll('#records-table tbody tr')[0]");
+  EXPECT_GE(absent, 0);
+  choose("filter-method", "gc");
+  js("[...document.querySelectorAll('#records-table tbody tr')].find(r => r.cells[2].textContent === records[" +
+     absent.dump() + "].pair).click()");
+  EXPECT_THAT(js("byId('pair-note').textContent").get<std::string>(), HasSubstr("not among the 3 pairs"));
+  EXPECT_EQ(js("byId('pair-view').hidden"), true);
+  choose("filter-outcome", "failed");
+  choose("filter-method", "");
+  EXPECT_EQ(column(2), Json({"broken", "broken", "broken"}));
+}
+
+TEST_F(PageInBrowser, APointLeadsToItsPairInThreeDimensions) {
+  const auto [x, y] = point(0, 0, 2);  // precision of ss at 0.4
+  browser_->click(x, y);
+  wait_for_drawing();
+  const std::string pair = js("pairView.state.scene.pair");
+  EXPECT_THAT(pair, HasSubstr("-high"));
+  EXPECT_EQ(js("[byId('filter-level').value, byId('filter-method').value, byId('left-method').value]"),
+            Json({"0.4", "ss", "ss"}));
+  EXPECT_EQ(js("document.querySelectorAll('#records-table tbody tr').length"), 2);
+
+  for (const char* method : {"ss", "gc", "nnsr"}) {  // what is drawn is what was scored
+    choose("left-method", method);
+    for (const StudyRecord& record : run_.records) {
+      if (record.pair != pair || record.method != method) continue;
+      const Json drawn =
+          js("Object.fromEntries(pairView.halves()[0].three.children.filter(c => c.name).map(c => [c.name, "
+             "c.userData.count]))");
+      EXPECT_EQ(drawn.value("right", 0), *record.correct);
+      EXPECT_EQ(drawn.value("wrong", 0), *record.selected - *record.correct);
+      EXPECT_EQ(drawn.value("missed", 0), *record.true_matches - *record.correct);
+    }
+  }
+  // Where the threshold is what is swept, that of the level decides.
+  js("data.experiments[0].attribute = 'threshold_pr'; pairView.show(records.find(r => r.pair === '" + pair +
+     "' && r.method === 'oracle'))");
+  EXPECT_EQ(js("pairView.halves()[0].groups.right.length"),
+            js("[...pairView.state.scene.distance].filter((d, i) => d <= 0.4 && "
+               "pairView.state.scene.kept.oracle[i]).length"));
+  EXPECT_LT(js("pairView.halves()[0].groups.right.length"),
+            js("pairView.state.scene.kept.oracle.filter(Boolean).length"));
+  js("data.experiments[0].attribute = 'noise_pr'");
+  choose("left-method", "ss");
+  const Json all = pixels();
+  for (const char* kind : {"source", "target"}) EXPECT_GT(all[kind], 10000) << kind;
+  EXPECT_GT(all["right"], 1000);
+  EXPECT_GT(all["wrong"], 200);
+  click("#show-right");
+  const Json without_right = pixels();
+  EXPECT_LT(without_right["right"], all["right"].get<int>() / 20);
+  EXPECT_GE(without_right["wrong"], all["wrong"]);
+  click("#show-wrong");
+  EXPECT_LT(pixels()["wrong"], all["wrong"].get<int>() / 20);
+}
+
+TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
+  choose("right-method", "gc");
+  const Json left = pixels("left"), right = pixels("right");
+  EXPECT_GT(left["source"], 5000);
+  EXPECT_GT(right["source"], 5000);
+  EXPECT_NE(left["right"], right["right"]);  // two groupers kept other matches
+  EXPECT_THAT(js("byId('left-caption').textContent + byId('right-caption').textContent").get<std::string>(),
+              ::testing::AllOf(HasSubstr("SS "), HasSubstr("GC ")));
+  const auto [x, y] = place_of("#view");
+  browser_->drag(x - 300, y, x - 150, y + 40);
+  const Json turned = pixels("right");
+  EXPECT_NE(turned["sum"], right["sum"]);  // one camera for both
+  EXPECT_GT(turned["source"], 3000);
+  browser_->press("0");
+  EXPECT_EQ(pixels("right"), right);
+  browser_->press("ArrowLeft");
+  EXPECT_NE(pixels("right")["sum"], right["sum"]);
+
+  choose("right-method", "");
+  choose("layout", "aligned");
+  choose("stage", "truth");
+  EXPECT_GT(pixels()["source"], 1000);
+  // Decoded places and the true pose give the residuals that were measured on the full meshes.
+  const Json worst = js(R"js((() => {
+    const s = pairView.state.scene, t = s.truth;
+    let worst = 0;
+    for (let i = 0; i < s.matches; ++i) {
+      const [x, y, z] = s.p.subarray(3 * i, 3 * i + 3);
+      const apart = [0, 1, 2].map(r => t.slice(4 * r, 4 * r + 4)
+          .reduce((sum, v, k) => sum + v * [x, y, z, 1][k], -s.q[3 * i + r]));
+      worst = Math.max(worst, Math.abs(Math.hypot(...apart) / s.resolution - s.distance[i]));
+    }
+    return worst; })())js");
+  EXPECT_LT(worst, 0.01);
+  // The surfaces do lie on each other: their boxes on the screen are the same up to the noise.
+  const Json box =
+      js("(() => { const [a, b] = pairView.halves()[0].three.children.filter(c => c.isMesh).map(c => { "
+         "c.geometry.computeBoundingBox(); return c.geometry.boundingBox; }); return [a.min.distanceTo(b.min), "
+         "a.max.distanceTo(b.max), a.min.distanceTo(a.max)]; })()");
+  EXPECT_LT(box[0], 0.05 * box[2].get<double>());
+  EXPECT_LT(box[1], 0.05 * box[2].get<double>());
+
+  // Without a truth nothing is right or wrong: what was kept is drawn in a colour of its own.
+  js("Object.assign(data.scenes[1], {residuals: null, truth: null})");
+  choose("scene", js("byId('scene').options[1].value"));
+  choose("layout", "beside");
+  const Json drawn =
+      js("[pairView.halves()[0].groups.kept.length, pairView.state.scene.kept[byId('left-method').value]."
+         "filter(Boolean).length, byId('left-caption').textContent]");
+  EXPECT_GT(drawn[0], 0);
+  EXPECT_EQ(drawn[0], drawn[1]);
+  EXPECT_THAT(drawn[2].get<std::string>(), HasSubstr("no truth to judge them"));
+  const Json unjudged = pixels();
+  EXPECT_LT(unjudged["right"].get<int>() + unjudged["wrong"].get<int>(), 100);
+  EXPECT_GT(unjudged["target"], 5000);
+}
+
+}  // namespace
+}  // namespace corral::testing

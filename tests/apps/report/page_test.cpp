@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "apps/report/page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/figure/method_style.h"
+#include "apps/report/page_scenes.h"
+#include "io/file.h"
+#include "kernel/error.h"
+#include "kernel/surface/mesh/perturbation.h"
+#include "tests/io/scratch.h"
+#include "tests/support/meshes.h"
+#include "tests/support/study_run.h"
+
+namespace corral::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// A small run, made once: two pairs at one level, one at another that failed, a level without a pair.
+class Page : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists("/usr/share/javascript/three/three.min.js") ||
+        !std::filesystem::exists("/usr/share/javascript/chart.js/chart.min.js"))
+      GTEST_SKIP() << "libjs-three or libjs-chart.js is not installed";
+    const ExperimentInfo experiment{
+        "noise",      "Noise <b> & \"more\" </script><script>alert(1)</script>", "a",          "spheres", "noise_pr",
+        "noise (pr)", {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.3", 0.3, 0.3}}, {"ss", "gc"}, 4,         1};
+    std::vector<StudyCase> cases;
+    for (const int seed : {1, 2}) {
+      const Mesh sphere = bumpy_sphere(3, static_cast<std::uint64_t>(seed));
+      const RigidTransform truth = random_motion(sphere, 5);
+      cases.push_back({"0.1", "pair" + std::to_string(seed), sphere, move_mesh(sphere, truth), truth});
+    }
+    cases.push_back({"0.2", "broken", {}, {}, {}});
+    put_run(folder_ / "run", experiment, cases);
+  }
+
+  std::vector<RunFolder> runs() const { return {read_run(folder_ / "run")}; }
+  Json data() const { return data_of(report_page(runs())); }
+
+  static Json data_of(const std::string& page) {
+    const std::string open = "<script type=\"application/json\" id=\"data\">";
+    const std::size_t begin = page.find(open) + open.size();
+    return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(Page, SameRunsSameBytes) { EXPECT_EQ(report_page(runs()), report_page(runs())); }
+
+TEST_F(Page, HoldsTheMeansOfTheSummaryAndGapsWhereThereAreNone) {
+  const Json means = data()["experiments"][0]["means"];
+  ASSERT_EQ(means.size(), 12u);  // three levels, two methods and the bounds
+  std::string summary = text_of(folder_ / "run/summary.csv");
+  EXPECT_THAT(means[0]["level"], "0.1");
+  EXPECT_EQ(means[0]["pairs"], 2);
+  EXPECT_TRUE(means[0]["precision"].is_number());
+  EXPECT_EQ(means[4]["level"], "0.2");
+  EXPECT_EQ(means[4]["failed"], 1);
+  EXPECT_TRUE(means[4]["precision"].is_null());
+  EXPECT_TRUE(means[8]["f1"].is_null());
+
+  const std::size_t cell = summary.find("\nnoise,spheres,0.1,ss,2,0,0,") + 28;
+  summary.replace(cell, summary.find(',', cell) - cell, "0.123456789");
+  put_text(folder_ / "run/summary.csv", summary);
+  EXPECT_EQ(data()["experiments"][0]["means"][0]["precision"], 0.12346);
+  summary.replace(cell, 11, "much");
+  put_text(folder_ / "run/summary.csv", summary);
+  EXPECT_THAT(io_error_of([&] { report_page(runs()); }), HasSubstr("precision 'much'"));
+}
+
+TEST_F(Page, ARunOfTimesHasATableOfItsOwn) {
+  remove_file(folder_ / "run/summary.csv");
+  put_text(folder_ / "run/time.csv",
+           "experiment,dataset,level,method,runs,median_ms\nnoise,spheres,0.2,gc,10,0.25\nother,spheres,0.1,gc,10,1\n");
+  const Json means = data()["experiments"][0]["means"];
+  ASSERT_EQ(means.size(), 1u);
+  EXPECT_EQ(means[0], Json({{"level", "0.2"}, {"method", "gc"}, {"runs", 10}, {"median_ms", 0.25}}));
+  put_text(folder_ / "run/time.csv", "experiment,dataset,level,method,runs\n");
+  EXPECT_THAT(io_error_of([&] { report_page(runs()); }), HasSubstr("median_ms is missing"));
+}
+
+TEST_F(Page, HoldsEveryRecord) {
+  const Json page = data();
+  const std::vector<StudyRecord> records = runs()[0].records;
+  const auto word = [&](const char* column, std::size_t row) {
+    return page["words"][page["records"][column][row].get<std::size_t>()].get<std::string>();
+  };
+  ASSERT_EQ(page["records"]["pair"].size(), records.size());
+  for (std::size_t row = 0; row < records.size(); ++row) {
+    EXPECT_EQ(word("pair", row), records[row].pair);
+    EXPECT_EQ(word("method", row), records[row].method);
+    EXPECT_EQ(word("status", row), records[row].status);
+    EXPECT_EQ(page["records"]["selected"][row].is_null(), !records[row].selected.has_value());
+    if (records[row].refined.mean_error_pr) {
+      EXPECT_NEAR(page["records"]["refined_mean_error_pr"][row], *records[row].refined.mean_error_pr, 1e-4);
+    }
+  }
+}
+
+TEST_F(Page, MethodsLookAsInTheFigures) {
+  const Json styles = data()["styles"];
+  EXPECT_EQ(styles.size(), 4u);
+  for (const auto& [method, style] : method_styles({"ss", "gc", "oracle", "floor"}))
+    EXPECT_EQ(styles[method],
+              Json({{"label", style.label}, {"color", style.color}, {"point", style.point}, {"dash", style.dash}}));
+}
+
+TEST_F(Page, NothingFromTheDataIsMarkup) {
+  PageOptions options;
+  options.title = "<i>T</i> & \xff {{data}}";
+  options.verdicts = R"([{"id": "C1", "verdict": "holds", "statement": "</script><img src=x>"}])";
+  std::string page = report_page(runs(), options);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find("<script>alert"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("<title>&lt;i>T&lt;/i> &amp; \xff {{data}}</title>"));
+  EXPECT_EQ(data_of(page)["verdicts"][0]["statement"], "</script><img src=x>");
+  EXPECT_EQ(data_of(page)["experiments"][0]["title"], runs()[0].experiments[0].title);
+  int opened = 0, closed = 0;
+  for (std::size_t at = 0; (at = page.find("<script", at)) != std::string::npos; ++at) ++opened;
+  for (std::size_t at = 0; (at = page.find("</script", at)) != std::string::npos; ++at) ++closed;
+  EXPECT_EQ(opened, 11);  // the data, three of the libraries, seven of ours
+  EXPECT_EQ(closed, 11);
+}
+
+TEST_F(Page, SaysWhatIsMissing) {
+  PageOptions options;
+  options.scripts = folder_ / "nowhere";
+  EXPECT_THAT(io_error_of([&] { report_page(runs(), options); }), HasSubstr("libjs-three"));
+  options = {};
+  for (const char* wrong : {"{", "{}", "[1]", R"([{"id": "C1"}])"}) {
+    options.verdicts = wrong;
+    EXPECT_THROW(report_page(runs(), options), InvalidInput) << wrong;
+  }
+  remove_file(folder_ / "run/summary.csv");
+  EXPECT_THAT(io_error_of([&] { report_page(runs()); }), HasSubstr("summary.csv"));
+}
+
+TEST_F(Page, APairThatCannotBeDrawnIsSaidSo) {
+  const std::string mesh = runs()[0].pairs.at("spheres/pair1").target;
+  const std::string selections = folder_ / "run/selections/pair2.csv";
+  put_text(selections, "source_keypoint,target_keypoint,residual_pr,ss\n1,100000,0,1\n");
+  remove_file(mesh);
+  const Json scenes = data()["scenes"];
+  ASSERT_EQ(scenes.size(), 2u);
+  std::string problems;
+  for (const Json& scene : scenes) problems += scene["problem"].get<std::string>() + "\n";
+  EXPECT_THAT(problems, HasSubstr(mesh));
+  EXPECT_THAT(problems, HasSubstr("vertex 100000 of a mesh of 642 vertices"));
+}
+
+/// A run of a level whose pairs have these F1 for one method, and another level that shares the first pair.
+RunFolder run_of(const std::vector<std::optional<double>>& f1) {
+  RunFolder run;
+  run.experiments = {{"e", "", "", "d", "", "", {{"1", 1, 1}, {"2", 2, 2}}, {"gc"}, 4, 1}};
+  for (std::size_t i = 0; i < f1.size(); ++i)
+    for (const char* method : {"gc", "oracle"}) {
+      StudyRecord record;
+      record.experiment = "e";
+      record.dataset = "d";
+      record.level = "1";
+      record.pair = "p" + std::to_string(i);
+      record.method = method;
+      record.f1 = f1[i];
+      if (method == std::string("oracle")) record.f1 = 1 - f1[i].value_or(0) * 3;  // must not count
+      record.selection = "s" + std::to_string(i);
+      run.records.push_back(record);
+      if (i > 0) continue;
+      record.level = "2";
+      run.records.push_back(record);
+    }
+  return run;
+}
+
+std::vector<std::string> names_of(const std::vector<SceneChoice>& scenes) {
+  std::vector<std::string> names;
+  for (const SceneChoice& scene : scenes) names.push_back(scene.pair);
+  return names;
+}
+
+TEST(ChooseScenes, MedianThenWorstThenBestThenTheOthers) {
+  const std::vector<RunFolder> runs = {run_of({0.1, 0.9, 0.5, 0.2, 0.8})};
+  // p0 is all that level 2 has.
+  EXPECT_THAT(names_of(choose_scenes(runs, 9)), ElementsAre("p2", "p0", "p1", "p3", "p4"));
+  EXPECT_THAT(names_of(choose_scenes(runs, 3)), ElementsAre("p2", "p0", "p1"));
+  EXPECT_TRUE(choose_scenes(runs, 0).empty());
+  EXPECT_THAT(names_of(choose_scenes({run_of({0.3, std::nullopt, 0.3})}, 9)), ElementsAre("p0", "p1", "p2"));
+}
+
+TEST(ChooseScenes, OfEveryRunAndNoneWithoutSelections) {
+  std::vector<RunFolder> runs = {run_of({0.5}), run_of({0.5})};
+  EXPECT_EQ(choose_scenes(runs, 9).size(), 2u);
+  for (StudyRecord& record : runs[0].records) record.selection.clear();
+  ASSERT_EQ(choose_scenes(runs, 9).size(), 1u);
+  EXPECT_EQ(choose_scenes(runs, 9)[0].run, 1);
+}
+
+}  // namespace
+}  // namespace corral::testing

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "apps/results/level_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "kernel/error.h"
+#include "kernel/evaluation.h"
+#include "tests/io/scratch.h"
+#include "tests/support/simulated_run.h"
+
+namespace corral {
+namespace {
+
+using ::testing::DoubleEq;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsNan;
+
+StudyRecord record_of(const std::string& pair, const std::string& method, int true_matches, int selected, int correct) {
+  StudyRecord record;
+  record.experiment = "noise";
+  record.level = "0.1";
+  record.pair = pair;
+  record.method = method;
+  record.matches = 100;
+  record.true_matches = true_matches;
+  record.selected = selected;
+  record.correct = correct;
+  if (selected > 0) record.precision = correct / static_cast<double>(selected);
+  if (true_matches > 0) {
+    record.recall = correct / static_cast<double>(true_matches);
+    record.f1 = 2.0 * correct / (selected + true_matches);
+  }
+  return record;
+}
+
+RunFolder run_of(const std::vector<StudyRecord>& records) {
+  RunFolder run;
+  run.experiments.push_back({"noise", "", "", "b3r", "noise_pr", "", {testing::step(0.1)}, {"gc"}, 4, 1});
+  run.records = records;
+  return run;
+}
+
+TEST(LevelTable, AveragesAsTheDefinitionsSay) {
+  StudyRecord aligned = record_of("a", "gc", 20, 10, 8);
+  aligned.refined.mean_error_pr = 5.0;
+  StudyRecord missed = record_of("b", "gc", 40, 40, 10);
+  missed.refined.mean_error_pr = 5.1;
+  const StudyRecord empty = record_of("c", "gc", 10, 0, 0);    // precision 0, and counted
+  const StudyRecord excluded = record_of("d", "gc", 0, 5, 0);  // no right match: for no method
+  StudyRecord failed;                                          // could not be matched
+  failed.experiment = "noise";
+  failed.level = "0.1";
+  failed.pair = "e";
+  failed.method = "gc";
+  failed.status = "failed: no keypoints";
+  const LevelTable level = experiment_tables(run_of({aligned, missed, empty, excluded, failed})).at(0).levels.at(0);
+  const MethodColumns& columns = level.methods.at("gc");
+  EXPECT_THAT(level.pairs, ElementsAre("a", "b", "c", "d", "e"));
+  EXPECT_EQ(level.counted(), 3);
+  EXPECT_EQ(level.excluded, 1);
+  EXPECT_EQ(level.failed, 1);
+  EXPECT_EQ(columns.empty, 1);
+  EXPECT_DOUBLE_EQ(mean_of(columns.precision), (0.8 + 0.25 + 0) / 3);
+  EXPECT_DOUBLE_EQ(mean_of(columns.nonempty_precision), (0.8 + 0.25) / 2);
+  EXPECT_DOUBLE_EQ(mean_of(columns.recall), (0.4 + 0.25 + 0) / 3);
+  EXPECT_DOUBLE_EQ(mean_of(columns.f1), (16 / 30.0 + 0.25 + 0) / 3);  // of each pair, then the mean
+  EXPECT_DOUBLE_EQ(mean_of(columns.success), 1 / 3.0);
+  EXPECT_DOUBLE_EQ(pooled_precision(level, "gc"), 18 / 50.0);
+  EXPECT_DOUBLE_EQ(pooled_recall(level, "gc"), 18 / 70.0);
+  EXPECT_DOUBLE_EQ(mean_of(level.inlier_ratio), (0.2 + 0.4 + 0.1 + 0) / 4);
+}
+
+TEST(LevelTable, ExcludesPairsWithTooFewTrueMatches) {
+  RunFolder run = run_of({record_of("a", "gc", 2, 2, 1), record_of("b", "gc", 3, 2, 2)});
+  run.experiments[0].least_true_matches = 3;
+  const LevelTable level = experiment_tables(run).at(0).levels.at(0);
+  EXPECT_EQ(level.excluded, 1);
+  EXPECT_THAT(level.methods.at("gc").precision, ElementsAre(IsNan(), 1.0));
+}
+
+TEST(LevelTable, AveragesRepeatsBeforePairs) {
+  StudyRecord first = record_of("a", "ransac", 10, 10, 10), second = record_of("a", "ransac", 10, 0, 0);
+  second.repeat = 1;
+  first.time_ms = 1;
+  second.time_ms = 3;
+  const LevelTable level =
+      experiment_tables(run_of({first, second, record_of("b", "ransac", 10, 10, 0)})).at(0).levels.at(0);
+  EXPECT_THAT(level.methods.at("ransac").precision, ElementsAre(0.5, 0));
+  EXPECT_THAT(level.methods.at("ransac").time_ms, ElementsAre(DoubleEq(2), IsNan()));
+  EXPECT_EQ(level.methods.at("ransac").empty, 1);
+}
+
+TEST(LevelTable, KeepsTablesOfSeveralSizesOfAPairApart) {
+  StudyRecord small = record_of("a", "gc", 10, 10, 10), large = record_of("a", "gc", 10, 10, 0);
+  small.value = 300;
+  large.value = 400;
+  EXPECT_EQ(experiment_tables(run_of({small, large})).at(0).levels.at(0).counted(), 2);
+}
+
+TEST(LevelTable, AMethodWithoutAnAnswerHasZeroAndIsNotEmpty) {
+  StudyRecord refused = record_of("a", "st", 10, 0, 0);
+  refused.status = "too large: needs 9 GB";
+  refused.selected.reset();
+  refused.recall.reset();
+  refused.f1.reset();
+  const LevelTable level = experiment_tables(run_of({refused, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0);
+  EXPECT_EQ(mean_of(level.methods.at("st").precision), 0);
+  EXPECT_EQ(level.methods.at("st").empty, 0);
+  EXPECT_EQ(level.methods.at("st").failed, 1);
+  EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+  EXPECT_EQ(level.methods.at("gc").failed, 0);
+}
+
+TEST(LevelTable, APairWithoutATruthIsExcluded) {
+  StudyRecord unknown = record_of("a", "gc", 0, 5, 0);
+  unknown.true_matches.reset();
+  const LevelTable level = experiment_tables(run_of({unknown, record_of("b", "gc", 10, 1, 1)})).at(0).levels.at(0);
+  EXPECT_EQ(level.excluded, 1);
+  EXPECT_EQ(level.failed, 0);
+  EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+}
+
+// Keypoint radii may give tables of a pair that are equally large.
+TEST(LevelTable, KeepsTablesOfOneSizeOfAPairApart) {
+  std::vector<StudyRecord> records;
+  for (const int correct : {10, 0})
+    for (const char* method : {"gc", "ransac"})
+      for (const int repeat : {0, 1}) {
+        records.push_back(record_of("a", method, 10, 10, correct));
+        records.back().repeat = repeat;
+        records.back().value = 100;
+        records.back().selection = correct > 0 ? "first.csv" : "second.csv";
+      }
+  const LevelTable level = experiment_tables(run_of(records)).at(0).levels.at(0);
+  EXPECT_EQ(level.counted(), 2);
+  EXPECT_THAT(level.selections, ElementsAre("first.csv", "second.csv"));
+  for (const char* method : {"gc", "ransac"}) EXPECT_THAT(level.methods.at(method).precision, ElementsAre(1, 0));
+}
+
+// As where the number of matches is the level, and a pair has none as it failed.
+TEST(LevelTable, PassesOverARecordWithoutALevel) {
+  StudyRecord nowhere;
+  nowhere.experiment = "noise";
+  nowhere.pair = "b";
+  nowhere.method = "gc";
+  EXPECT_EQ(experiment_tables(run_of({nowhere, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0).pairs.size(), 1u);
+}
+
+TEST(LevelTable, PosesAreJudgedStageByStage) {
+  StudyRecord good = record_of("a", "gc", 10, 4, 4), none = record_of("b", "gc", 10, 4, 4);
+  good.initial.mean_error_pr = 6;
+  good.refined.mean_error_pr = 1;
+  good.refined.rotation_error_deg = 2;
+  const auto columns = [&] { return experiment_tables(run_of({good, none})).at(0).levels.at(0).methods.at("gc"); };
+  EXPECT_THAT(columns().initial_success, ElementsAre(0, 0));
+  EXPECT_THAT(columns().success, ElementsAre(1, 0));
+  EXPECT_THAT(columns().success_area, ElementsAre(DoubleEq(success_area({1.0})), 0));
+  EXPECT_THAT(columns().rotation_error_deg, ElementsAre(2, std::numeric_limits<double>::infinity()));
+  EXPECT_THAT(columns().dense_success, ElementsAre(IsNan(), IsNan()));  // nobody tried
+  good.dense.rotation_error_deg = 1;
+  good.dense.mean_error_pr = 1;
+  EXPECT_THAT(columns().dense_success, ElementsAre(1, 0));
+}
+
+TEST(LevelTable, RefusesALevelThatTheManifestLacks) {
+  StudyRecord stray = record_of("a", "gc", 10, 1, 1);
+  stray.level = "0.7";
+  EXPECT_THAT(testing::io_error_of([&] { experiment_tables(run_of({stray})); }), HasSubstr("0.7"));
+}
+
+TEST(LevelTable, MeansPassOverWhatIsAbsent) {
+  const double absent = std::nan("");
+  EXPECT_EQ(mean_of({1, absent, 4}), 2.5);
+  EXPECT_EQ(mean_of({1, absent, 4}, {0, 1, 0, 2}), 2);
+  EXPECT_EQ(median_of({5, absent, 1, 2}), 2);
+  EXPECT_EQ(median_of({5, 1}), 3);
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(median_of({infinite, 1, 3}), 3);
+  EXPECT_EQ(median_of({infinite, 1}), infinite);
+  EXPECT_EQ(median_of({infinite, infinite, 1}), infinite);
+  EXPECT_THAT(mean_of({absent}), IsNan());
+  EXPECT_THAT(median_of({}), IsNan());
+}
+
+TEST(LevelTable, ComparesSelections) {
+  const testing::ScratchFolder folder;
+  testing::put_text(folder / "x.csv",
+                    "source_keypoint,target_keypoint,residual_pr,ss,gc,si,oracle\n"
+                    "0,0,,1,1,0,0\n1,1,,1,0,0,0\n2,2,,0,1,0,1\n");
+  RunFolder run = run_of({record_of("a", "gc", 10, 1, 1), record_of("b", "gc", 10, 1, 1)});
+  run.folder = folder.path();
+  run.records[0].selection = "x.csv";
+  const auto agreements = selection_agreement(run, experiment_tables(run).at(0), {"ss", "gc", "si"});
+  // ss and gc share 1 of 3 rows, si shares none with either
+  EXPECT_THAT(agreements.at(0), ElementsAre(DoubleEq((1.0 / 3 + 0 + 0) / 3), IsNan()));
+}
+
+}  // namespace
+}  // namespace corral

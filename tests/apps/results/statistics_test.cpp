@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+// Frozen cases are of scipy 1.10.1; how each was made stands beside it.
+#include "apps/results/statistics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "kernel/error.h"
+#include "kernel/random.h"
+
+namespace corral {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Values = std::vector<double>;
+
+constexpr double kExact = 1e-10;
+
+TEST(Wilcoxon, AgreesWithScipyWhereItIsExact) {
+  // wilcoxon(d, method="exact")
+  const WilcoxonTest few = wilcoxon_signed_rank({0.100369, 0.189624, 0.017759, -0.167178, -0.036401, -0.197494,
+                                                 0.118043, 0.502065, -0.047662, -0.086142, 0.246953, 0.207066});
+  EXPECT_TRUE(few.is_exact);
+  EXPECT_EQ(few.statistic, 25);
+  EXPECT_NEAR(few.p, 0.30126953125, kExact);
+  const WilcoxonTest more = wilcoxon_signed_rank(
+      {0.031624,  -0.27914,  -0.008776, 0.208591,  -0.403264, -0.137285, -0.570367, -0.386861, -0.552521,
+       -0.070527, -0.380234, 0.081379,  0.047025,  -0.056079, -0.755028, -0.161608, -0.01455,  0.033993,
+       -0.459041, -0.143326, -0.293556, -0.242651, 0.31827,   -0.24226,  -0.009757});
+  EXPECT_EQ(more.statistic, 55);
+  EXPECT_NEAR(more.p, 0.0027848482131958008, kExact);
+}
+
+TEST(Wilcoxon, AgreesWithScipyWhereItApproximates) {
+  // wilcoxon(d, method="approx"): zeros left out, variance corrected for ties, no continuity correction
+  const WilcoxonTest tied =
+      wilcoxon_signed_rank({0.1, 0.2, 0.0, 0.3, -0.1, 0.2, 0.4, -0.3, 0.0, 0.5, 0.1, -0.2, 0.6, 0.7, 0.1});
+  EXPECT_FALSE(tied.is_exact);
+  EXPECT_EQ(tied.statistic, 17);
+  EXPECT_NEAR(tied.p, 0.04540058063513438, kExact);
+  Values many;  // [((i * 37) % 101 - 40) / 100 for i in range(60)]
+  for (int i = 0; i < 60; ++i) many.push_back(((i * 37) % 101 - 40) / 100.0);
+  const WilcoxonTest large = wilcoxon_signed_rank(many);
+  EXPECT_FALSE(large.is_exact);
+  EXPECT_EQ(large.statistic, 583);
+  EXPECT_NEAR(large.p, 0.02263320893600752, kExact);
+}
+
+TEST(Wilcoxon, SeesNothingWhereNothingDiffers) {
+  EXPECT_EQ(wilcoxon_signed_rank({}).p, 1);
+  EXPECT_EQ(wilcoxon_signed_rank({0, 0, 0}).p, 1);
+  EXPECT_EQ(wilcoxon_signed_rank({1, -2, -3, 4}).p, 1);    // 5 against 5
+  EXPECT_EQ(wilcoxon_signed_rank({1, 2, 3, 4}).p, 0.125);  // all of one sign: 2 of 2^4
+}
+
+TEST(Holm, StepsDown) {
+  EXPECT_THAT(holm_adjusted({0.01, 0.04, 0.03, 0.005}), ElementsAre(0.03, 0.06, 0.06, 0.02));
+  EXPECT_THAT(holm_adjusted({0.5, 0.9}), ElementsAre(1.0, 1.0));
+  EXPECT_THAT(holm_adjusted({}), IsEmpty());
+}
+
+TEST(McNemar, AgreesWithScipy) {
+  struct Case {
+    int first, second;
+    double exact, chi_square, p;
+  };
+  // binomtest(b, b + c).pvalue; chi2.sf(max(0, |b - c| - 1)^2 / (b + c), 1)
+  for (const Case& each :
+       {Case{3, 11, 0.057373046875, 3.5, 0.0613688291394023}, Case{0, 5, 0.0625, 3.2, 0.07363827012030258},
+        Case{40, 61, 0.04604406692934279, 3.9603960396039604, 0.04658274252301569}, Case{7, 7, 1, 0, 1},
+        Case{1, 0, 1, 0, 1}, Case{0, 0, 1, 0, 1}}) {
+    const McNemarTest test = mcnemar(each.first, each.second);
+    EXPECT_NEAR(test.exact_p, each.exact, kExact) << each.first;
+    EXPECT_NEAR(test.chi_square, each.chi_square, kExact) << each.first;
+    EXPECT_NEAR(test.chi_square_p, each.p, kExact) << each.first;
+    EXPECT_EQ(mcnemar(each.second, each.first).exact_p, test.exact_p);
+  }
+  EXPECT_THROW(mcnemar(-1, 3), InvalidInput);
+}
+
+TEST(StudentizedRange, AgreesWithScipyAndWithLongArithmetic) {
+  // studentized_range.cdf(q, k, inf); mpmath with 30 digits gives the same
+  EXPECT_NEAR(studentized_range_cdf(1.5, 2), 0.711155633653515132, 1e-14);
+  EXPECT_NEAR(studentized_range_cdf(3.3, 3), 0.948689093581810124, 1e-14);
+  EXPECT_NEAR(studentized_range_cdf(4.0, 7), 0.930041234370183854, 1e-14);
+  EXPECT_NEAR(studentized_range_cdf(2.0, 10), 0.0767857613931468833, 1e-14);
+  // studentized_range.ppf(0.95, k, inf), to the digits of mpmath
+  const std::pair<int, double> quantiles[] = {{2, 2.77180764869935589},
+                                              {3, 3.31449315539812098},
+                                              {5, 3.85765551037862325},
+                                              {7, 4.1695541550065473},
+                                              {10, 4.47412422172590506}};
+  for (const auto& [groups, quantile] : quantiles)
+    EXPECT_NEAR(studentized_range_quantile(0.95, groups), quantile, 1e-12) << groups;
+  EXPECT_NEAR(studentized_range_quantile(0.99, 7), 4.882166194995566, kExact);
+  EXPECT_THROW(studentized_range_quantile(1, 7), InvalidInput);
+  EXPECT_THROW(studentized_range_cdf(1, 1), InvalidInput);
+}
+
+TEST(Ranks, AgreeWithScipy) {
+  // friedmanchisquare(*scores); rankdata(-scores, axis=0).mean(1)
+  const RankComparison close = compare_ranks({{1.02, 1.16, 0.58, 0.69, 0.72, 0.71, 0.5, 0.94},
+                                              {0.63, 0.26, 0.4, 0.69, 0.36, 0.41, 0.89, 0.2},
+                                              {0.16, 0.78, 0.87, 0.73, 0.82, 0.9, 0.89, 0.47}});
+  EXPECT_THAT(close.average_ranks, ElementsAre(1.8125, 2.625, 1.5625));
+  EXPECT_NEAR(close.chi_square, 5.266666666666667, kExact);
+  EXPECT_NEAR(close.p, 0.07183860068931328, kExact);
+  // studentized_range.ppf(0.95, 3, inf) / sqrt(2) * sqrt(3 * 4 / (6 * 8)); Demsar's table has q = 2.343
+  EXPECT_NEAR(close.critical_difference, 3.314493155398122 / std::sqrt(2.0) * 0.5, kExact);
+  EXPECT_THAT(close.cliques, ElementsAre(ElementsAre(2, 0, 1)));
+}
+
+TEST(Ranks, FormCliquesFromTheBestOn) {
+  // Four methods in the same order on 12 pairs, the last two tied: ranks 1, 2, 3.5, 3.5; the critical difference is 1.354.
+  const RankComparison ranks = compare_ranks({Values(12, 4.0), Values(12, 3.0), Values(12, 1.0), Values(12, 1.0)});
+  EXPECT_THAT(ranks.average_ranks, ElementsAre(1, 2, 3.5, 3.5));
+  EXPECT_NEAR(ranks.critical_difference, 1.354, 1e-3);
+  EXPECT_THAT(ranks.cliques, ElementsAre(ElementsAre(0, 1), ElementsAre(2, 3)));
+  EXPECT_LT(ranks.p, 1e-6);
+}
+
+TEST(Ranks, RefuseWhatCannotBeRanked) {
+  EXPECT_THROW(compare_ranks({{1, 2}}), InvalidInput);
+  EXPECT_THROW(compare_ranks({{1, 2}, {1}}), InvalidInput);
+  EXPECT_THROW(compare_ranks({{}, {}}), InvalidInput);
+  EXPECT_THROW(compare_ranks({{1}, {std::numeric_limits<double>::quiet_NaN()}}), InvalidInput);
+  EXPECT_EQ(compare_ranks({{1, 1}, {1, 1}}).p, 1);  // all tied
+}
+
+TEST(Spearman, AgreesWithScipy) {
+  // spearmanr(a, b)
+  EXPECT_NEAR(spearman({-2.11, 0.259, 0.044, -0.246, 0.039, -0.861, -1.513, -0.167, -0.972},
+                       {-3.8, 0, 0, 0.2, -1.0, -1.5, -2.5, -1.1, -0.8}),
+              0.6945667492672501, kExact);
+  EXPECT_TRUE(std::isnan(spearman({1, 2, 3}, {5, 5, 5})));
+}
+
+TEST(Quantile, IsLinearBetweenValues) {
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0), 1);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0.5), 2);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 0.75), 3);
+  EXPECT_EQ(quantile_of({4, 1, 2}, 1), 4);
+  EXPECT_EQ(quantile_of({7}, 0.25), 7);
+}
+
+TEST(Bootstrap, IsDeterministicAndHoldsItsMean) {
+  const Values values = {0.1, 0.9, 0.4, 0.4, 0.8, 0.0, 0.3};
+  const MeanInterval once = bootstrap_mean(values, 5), again = bootstrap_mean(values, 5);
+  EXPECT_EQ(once.low, again.low);
+  EXPECT_EQ(once.high, again.high);
+  EXPECT_NE(once.low, bootstrap_mean(values, 6).low);
+  EXPECT_NEAR(once.mean, 2.9 / 7, 1e-15);
+  EXPECT_LT(once.low, once.mean);
+  EXPECT_GT(once.high, once.mean);
+  EXPECT_GE(once.low, 0);
+  EXPECT_LE(once.high, 0.9);
+  const MeanInterval single = bootstrap_mean({0.25}, 1), constant = bootstrap_mean(Values(8, 0.7), 1);
+  EXPECT_THAT((Values{single.low, single.high}), ElementsAre(0.25, 0.25));
+  EXPECT_EQ(constant.low, constant.high);
+  const MeanInterval two = bootstrap_mean({0, 1}, 1);  // Student's quantile is 12.7: all that was resampled
+  EXPECT_THAT((Values{two.low, two.high}), ElementsAre(0, 1));
+  EXPECT_THROW(bootstrap_mean({}, 1), InvalidInput);
+}
+
+TEST(Bootstrap, LeansToTheLongTail) {
+  const Values skewed = {0.02, 0.03, 0.01, 0.05, 0.04, 0.02, 0.06, 0.03, 0.5, 0.9};
+  const MeanInterval interval = bootstrap_mean(skewed, 1);
+  // the same formula in numpy with 1,000,000 resamples
+  EXPECT_NEAR(interval.low, 0.031, 0.005);
+  EXPECT_NEAR(interval.high, 0.509, 0.05);
+  Values mirrored;
+  for (const double value : skewed) mirrored.push_back(-value);
+  const MeanInterval other = bootstrap_mean(mirrored, 1);
+  EXPECT_NEAR(other.low, -interval.high, 1e-12);  // the same draws, mirrored
+  EXPECT_NEAR(other.high, -interval.low, 1e-12);
+}
+
+/// A variable in [0, 1] with density proportional to x^(a-1) (1-x)^(b-1), for whole a and b: an order statistic.
+double beta(RandomStream& stream, int a, int b) {
+  Values draws;
+  for (int i = 0; i < a + b - 1; ++i) draws.push_back(stream.uniform());
+  std::sort(draws.begin(), draws.end());
+  return draws[static_cast<std::size_t>(a - 1)];
+}
+
+struct Study {
+  const char* shape;
+  double truth;
+  std::function<double(RandomStream&)> draw;
+};
+
+/// Precisions and recalls as they occur: skewed to either side, empty selections, pairs that are solved or lost.
+const std::vector<Study>& studies() {
+  static const std::vector<Study> shapes = {
+      {"good", 0.8, [](RandomStream& stream) { return beta(stream, 8, 2); }},
+      {"poor", 2.0 / 7, [](RandomStream& stream) { return beta(stream, 2, 5); }},
+      {"some empty", 0.8 * 4 / 6, [](RandomStream& stream) { return stream.uniform() < 0.2 ? 0 : beta(stream, 4, 2); }},
+      {"solved or lost", 0.7 * 0.9 + 0.3 / 9,
+       [](RandomStream& stream) { return stream.uniform() < 0.3 ? beta(stream, 1, 8) : beta(stream, 9, 1); }},
+      {"difference of two", 0.8 - 2.0 / 7, [](RandomStream& stream) {
+         const double first = beta(stream, 8, 2);
+         return first - beta(stream, 2, 5);
+       }}};
+  return shapes;
+}
+
+TEST(Bootstrap, IntervalsCoverTheTruthInAsManyStudiesAsTheySay) {
+  for (const Study& study : studies()) {
+    RandomStream stream(derive_seed(11, study.shape));
+    int covered = 0;
+    for (int trial = 0; trial < 1000; ++trial) {
+      Values values(10 + stream.below(21));  // 10 .. 30 pairs
+      for (double& value : values) value = study.draw(stream);
+      const MeanInterval interval = bootstrap_mean(values, static_cast<std::uint64_t>(trial));
+      covered += interval.low <= study.truth && study.truth <= interval.high;
+    }
+    EXPECT_GE(covered, 930) << study.shape;
+    EXPECT_LE(covered, 970) << study.shape;
+  }
+}
+
+}  // namespace
+}  // namespace corral

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "kernel/surface/search/resolution.h"
+
+#include <gtest/gtest.h>
+
+#include "kernel/error.h"
+#include "tests/support/meshes.h"
+#include "tests/support/reference_surface.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using testing::points_of;
+
+TEST(PointResolution, GridHasItsSpacing) {
+  EXPECT_DOUBLE_EQ(point_resolution(testing::grid(7, 5, 1.0).vertices), 1.0);
+  EXPECT_DOUBLE_EQ(point_resolution(testing::grid(7, 5, 0.375).vertices), 0.375);
+}
+
+TEST(PointResolution, IcosahedronHasItsEdge) {
+  // Edge over radius of a regular icosahedron: 1 / sin(72 degrees).
+  EXPECT_NEAR(point_resolution(testing::icosphere(0).vertices), 1 / std::sin(std::acos(-1.0) * 72 / 180), 1e-14);
+}
+
+TEST(PointResolution, IsTheMeanOverVerticesNotOverPairs) {
+  EXPECT_DOUBLE_EQ(point_resolution(points_of({{0, 0, 0}, {1, 0, 0}, {4, 0, 0}})), (1.0 + 1.0 + 3.0) / 3);
+}
+
+TEST(PointResolution, AgreesWithBruteForce) {
+  for (const Points& vertices :
+       {testing::bumpy_sphere(3, 4).vertices, testing::icosphere(3).vertices, testing::icosphere(4, 250.0).vertices}) {
+    const double expected = testing::reference_resolution(vertices);
+    EXPECT_NEAR(point_resolution(vertices), expected, 1e-13 * expected);
+  }
+}
+
+TEST(PointResolution, DuplicatesCountOnce) {
+  EXPECT_DOUBLE_EQ(point_resolution(points_of({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {4, 0, 0}, {4, 0, 0}, {0, 0, 0}})),
+                   5.0 / 3);
+  EXPECT_DOUBLE_EQ(point_resolution(points_of({{0.0, 0, 0}, {-0.0, 0, 0}, {2, 0, 0}})), 2.0);
+}
+
+TEST(PointResolution, ScalesAndSurvivesAnOffset) {
+  const Points vertices = testing::bumpy_sphere(3, 5).vertices;
+  const double resolution = point_resolution(vertices);
+  EXPECT_DOUBLE_EQ(point_resolution(1024 * vertices), 1024 * resolution);
+  EXPECT_NEAR(point_resolution(vertices.array() + 1e7), resolution, 1e-7);
+}
+
+TEST(PointResolution, NeedsTwoDistinctVertices) {
+  EXPECT_THROW(point_resolution(Points(0, 3)), InvalidInput);
+  EXPECT_THROW(point_resolution(points_of({{1, 2, 3}})), InvalidInput);
+  EXPECT_THROW(point_resolution(points_of({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}})), InvalidInput);
+}
+
+}  // namespace
+}  // namespace corral
