@@ -4,8 +4,8 @@
 #include <new>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/build_info.h"
+#include "apps/runtime/output.h"
 #include "io/toml_file.h"
 #include "kernel/error.h"
 

@@ -8,7 +8,7 @@
 #include "apps/align/alignment_files.h"
 #include "apps/commands/commands.h"
 #include "apps/pair/read_surface.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
 #include "kernel/error.h"

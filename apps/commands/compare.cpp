@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
 #include "apps/results/comparison.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 
 namespace corral {
 namespace {

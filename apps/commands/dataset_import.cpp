@@ -5,7 +5,7 @@
 #include "apps/dataset/import_b3r.h"
 #include "apps/dataset/import_u3m.h"
 #include "apps/dataset/import_u3or.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/workers.h"
 
 namespace corral {

@@ -6,7 +6,7 @@
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/workers.h"
 
 namespace corral {

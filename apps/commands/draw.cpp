@@ -5,7 +5,6 @@
 
 #include "apps/commands/commands.h"
 #include "apps/picture/pair_picture.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/group_file.h"

@@ -4,8 +4,9 @@
 #include <map>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
+#include "apps/runtime/text_table.h"
 #include "apps/study/specification.h"
 #include "apps/study/study.h"
 #include "apps/study/time_study.h"

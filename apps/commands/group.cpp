@@ -2,8 +2,8 @@
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
 #include "apps/pair/evaluate_pair.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/memory.h"
+#include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

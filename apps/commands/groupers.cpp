@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral groupers: the methods and their options.
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 
 namespace corral {
 namespace {

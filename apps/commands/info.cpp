@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "io/mesh_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/pair/match_report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/matches_file.h"

@@ -5,6 +5,8 @@
 
 #include "apps/commands/commands.h"
 #include "apps/pair/report_pair.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

@@ -4,7 +4,8 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "io/mesh_file.h"

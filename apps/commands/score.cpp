@@ -4,6 +4,8 @@
 
 #include "apps/commands/commands.h"
 #include "apps/pair/report_pair.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "kernel/number_text.h"

@@ -38,7 +38,7 @@ Json facts_of(const RunFolder& run) {
     Json facts = Json::object();
     for (const auto& [name, value] : manifest.items())
       if (name != "experiments" && name != "pairs")
-        facts[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace).size() > 4000
+        facts[name] = compact_json(value).size() > 4000
                           ? Json(std::to_string(value.size()) + " entries, see manifest.json")
                           : value;
     return facts;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <set>
 
-#include "apps/runtime/report.h"
+#include "apps/pair/match_report.h"
 #include "apps/runtime/build_info.h"
 #include "grouping/registry.h"
 #include "kernel/error.h"
@@ -90,7 +90,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
 
 /// What two calls must agree on to be the same run.
 std::string hash_of_experiments(const WorkList& list) {
-  std::string text = experiments_json(list).dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = compact_json(experiments_json(list));
   for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
   return content_hash(text);
 }

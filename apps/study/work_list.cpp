@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <tuple>
 
-#include "apps/runtime/report.h"
+#include "apps/pair/match_report.h"
 #include "apps/study/content_store.h"
 #include "grouping/registry.h"
 #include "io/line_reader.h"
@@ -255,23 +255,20 @@ int level_of(const std::vector<StudyLevel>& levels, double value) {
   return -1;
 }
 
-std::string matching_text(const MatchSettings& matching) {
-  return to_json(matching).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string matching_text(const MatchSettings& matching) { return compact_json(to_json(matching)); }
 
 std::string unit_text(const WorkUnit& unit) {
   Json tasks = Json::array(), selections = Json::object();
   for (const GroupingTask& task : unit.tasks)
     tasks.push_back({{"method", task.method}, {"options", task.options}, {"repeat", task.repeat}});
   for (const auto& [file, shown] : unit.selections) selections[file] = shown;
-  return Json{{"dataset", unit.dataset},
-              {"pair", unit.pair.name},
-              {"matching", to_json(unit.matching)},
-              {"tasks", tasks},
-              {"thresholds_pr", unit.thresholds_pr},
-              {"dense", unit.dense},
-              {"selections", selections}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return compact_json({{"dataset", unit.dataset},
+                       {"pair", unit.pair.name},
+                       {"matching", to_json(unit.matching)},
+                       {"tasks", tasks},
+                       {"thresholds_pr", unit.thresholds_pr},
+                       {"dense", unit.dense},
+                       {"selections", selections}});
 }
 
 }  // namespace corral

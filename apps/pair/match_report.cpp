@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "apps/runtime/report.h"
+#include "apps/pair/match_report.h"
 
-#include <algorithm>
-#include <cstdio>
-
-#include "io/file.h"
-#include "kernel/error.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/number_text.h"
 
 namespace corral {
@@ -60,15 +56,6 @@ std::string surface_lines(const char* name, const SurfaceReport& side) {
 
 }  // namespace
 
-Json to_json(const RigidTransform& transform) {
-  Json rows = Json::array();
-  for (int row = 0; row < 3; ++row)
-    rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2),
-                    transform.translation(row)});
-  rows.push_back({0.0, 0.0, 0.0, 1.0});
-  return rows;
-}
-
 Json to_json(const MatchReport& report) {
   Json stages = Json::array();
   for (const StageCost& cost : report.stages)
@@ -103,29 +90,6 @@ Json to_json(const MatchSettings& settings) {
   return json;
 }
 
-Json to_json(const GroupingScore& score) {
-  return {{"matches", score.matches},
-          {"selected", score.selected},
-          {"correct", score.correct},
-          {"true_matches", score.true_matches},
-          {"precision", json_or_null(score.precision)},
-          {"recall", json_or_null(score.recall)},
-          {"f1", json_or_null(score.f1)}};
-}
-
-Json typed(const std::string& value) {
-  if (value == "true" || value == "false") return value == "true";
-  if (const auto whole = parse_unsigned(value)) return *whole;
-  if (const auto number = parse_double(value)) return *number;
-  return value;
-}
-
-Json to_json(const std::vector<OptionValue>& options) {
-  Json json = Json::object();
-  for (const OptionValue& option : options) json[option.name] = typed(option.value);
-  return json;
-}
-
 std::string stage_report(const MatchReport& report) {
   std::string text = surface_lines("source", report.source) + surface_lines("target", report.target) + "pair: pr " +
                      to_text(report.resolution) + ", keypoint radius " + to_text(report.keypoint_radius) +
@@ -139,88 +103,5 @@ std::string stage_report(const MatchReport& report) {
   text.pop_back();
   return text;
 }
-
-TextTable::TextTable(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
-
-void TextTable::add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-
-std::string TextTable::str() const {
-  const std::size_t columns = rows_.front().size();
-  std::vector<std::size_t> widths(columns, 1);
-  std::vector<bool> is_text(columns, false);
-  for (std::size_t row = 0; row < rows_.size(); ++row)
-    for (std::size_t i = 0; i < columns; ++i) {
-      const std::string& cell = rows_[row].at(i);
-      widths[i] = std::max(widths[i], cell.size());
-      if (row > 0 && !cell.empty() && !parse_double(cell)) is_text[i] = true;
-    }
-  std::string text;
-  for (const auto& row : rows_) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string cell = row[i].empty() ? "-" : row[i];
-      const std::string space(widths[i] - cell.size(), ' ');
-      line += (i > 0 ? "  " : "") + (is_text[i] ? cell + space : space + cell);
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
-}
-
-std::string TextTable::markdown() const {
-  std::string text;
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    text += "|";
-    for (const std::string& cell : rows_[row]) {
-      std::string escaped;
-      for (const char letter : cell) escaped += letter == '|' ? std::string("\\|") : std::string(1, letter);
-      text += " " + escaped + " |";
-    }
-    text += "\n";
-    if (row > 0) continue;
-    text += "|";
-    for (std::size_t i = 0; i < rows_[0].size(); ++i) text += " --- |";
-    text += "\n";
-  }
-  return text;
-}
-
-std::string table_text(const std::vector<Json>& rows, const std::vector<TableColumn>& columns) {
-  std::vector<std::string> header;
-  for (const TableColumn& column : columns) header.push_back(column.header);
-  TextTable table(header);
-  for (const Json& row : rows) {
-    std::vector<std::string> cells;
-    for (const TableColumn& column : columns) {
-      const Json& value = row.at(column.key);
-      if (value.is_number())
-        cells.push_back(fixed(value.get<double>(), column.decimals));
-      else
-        cells.push_back(value.is_null() ? "" : value.get<std::string>());
-    }
-    table.add(cells);
-  }
-  return table.str();
-}
-
-std::string fixed(std::optional<double> value, int decimals) {
-  if (!value) return "";
-  std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, "%.*f", decimals, *value)) + 1, '\0');
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, *value);
-  text.pop_back();
-  return text;
-}
-
-void put(const std::string& path, const std::string& text) {
-  if (!path.empty()) return write_file(path, text);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw IoError("standard output", "", "cannot be written");
-}
-
-std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
-void put(const std::string& path, const Json& json) { put(path, json_text(json)); }
-
-void say(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 }  // namespace corral
