@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "grouping/options.h"
+#include "kernel/options.h"
 #include "kernel/rigid_transform.h"
 
 namespace corral {
