@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // corral dataset make: data sets from any meshes. A maker is a function make_x(options, progress) and a function here.
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/dataset/make_b3r.h"
 #include "apps/dataset/make_default.h"
 #include "apps/dataset/make_u3m.h"

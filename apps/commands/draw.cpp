@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <numeric>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
 #include "apps/picture/pair_picture.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"

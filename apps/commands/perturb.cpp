@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
+#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"

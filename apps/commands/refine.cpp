@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/pair/report_pair.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"

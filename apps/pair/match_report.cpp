@@ -49,7 +49,7 @@ std::string surface_lines(const char* name, const SurfaceReport& side) {
   if (side.topology) text += oddities(*side.topology);
   return text + ", pr " + to_text(side.resolution) + "\n  " + std::to_string(side.keypoints) + " keypoints of " +
          std::to_string(side.candidates) + " candidates, dropped " + std::to_string(side.dropped_small_support) +
-         " with fewer than 10 neighbours, " + std::to_string(side.dropped_no_frame) + " without a frame, " +
+         " with too few vertices around, " + std::to_string(side.dropped_no_frame) + " without a frame, " +
          std::to_string(side.dropped_no_histogram) + " without a histogram; " + std::to_string(side.descriptors) +
          " described\n";
 }
@@ -60,9 +60,10 @@ Json to_json(const MatchReport& report) {
   Json stages = Json::array();
   for (const StageCost& cost : report.stages)
     stages.push_back({{"stage", cost.stage}, {"time_ms", cost.time_ms}, {"peak_memory_mb", cost.peak_memory_mb}});
+  Json lengths = Json::object();
+  for (const UsedLength& length : report.lengths) lengths[length.name] = length.pr * report.resolution;
   return {{"resolution", report.resolution},
-          {"keypoint_radius", report.keypoint_radius},
-          {"support_radius", report.support_radius},
+          {"lengths", lengths},
           {"source", to_json(report.source)},
           {"target", to_json(report.target)},
           {"matches", report.matches},
@@ -70,31 +71,12 @@ Json to_json(const MatchReport& report) {
           {"hints", report.hints}};
 }
 
-Json to_json(const MatchSettings& settings) {
-  Json json = {{"resolution_rule", settings.resolution},
-               {"detector", settings.detector},
-               {"keypoint_radius_pr", settings.keypoint_radius_pr},
-               {"support_radius_pr", settings.support_radius_pr},
-               {"normals", settings.normals},
-               {"sensor", settings.sensor},
-               {"shot", settings.shot},
-               {"matcher", settings.matching.matcher},
-               {"mutual", settings.matching.mutual}};
-  if (settings.detector == "harris-mesh")
-    json["harris_mesh"] = {{"neighborhood", settings.harris_mesh.neighborhood},
-                           {"rings", settings.harris_mesh.rings},
-                           {"extent", settings.harris_mesh.extent},
-                           {"selection", settings.harris_mesh.selection},
-                           {"fraction", settings.harris_mesh.fraction},
-                           {"separation", settings.harris_mesh.separation}};
-  return json;
-}
-
 std::string stage_report(const MatchReport& report) {
   std::string text = surface_lines("source", report.source) + surface_lines("target", report.target) + "pair: pr " +
-                     to_text(report.resolution) + ", keypoint radius " + to_text(report.keypoint_radius) +
-                     ", support radius " + to_text(report.support_radius) + " mesh units; " +
-                     std::to_string(report.matches) + " matches\n";
+                     to_text(report.resolution);
+  for (const UsedLength& length : report.lengths)
+    text += ", " + length.name + " " + to_text(length.pr) + " (" + to_text(length.pr * report.resolution) + ")";
+  text += " mesh units; " + std::to_string(report.matches) + " matches\n";
   TextTable table({"stage", "time ms", "peak memory MB"});
   for (const StageCost& cost : report.stages)
     table.add({cost.stage, fixed(cost.time_ms, 1), fixed(cost.peak_memory_mb, 1)});

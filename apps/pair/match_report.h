@@ -8,8 +8,8 @@
 
 namespace corral {
 
+/// `lengths`: the options in pr of the detector and the descriptor, in mesh units.
 Json to_json(const MatchReport& report);
-Json to_json(const MatchSettings& settings);  ///< what results depend on
 
 /// The stage report in words, for stderr.
 std::string stage_report(const MatchReport& report);

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "apps/report/page_scenes.h"
 #include "apps/report/page_tables.h"
 #include "apps/runtime/embedded_files.h"
+#include "apps/runtime/json.h"
 #include "io/file.h"
 #include "kernel/error.h"
 
@@ -16,8 +16,6 @@ namespace corral {
 const EmbeddedFiles& embedded_page();  // the files of apps/experiment/page
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))

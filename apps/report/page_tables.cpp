@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "apps/report/figure/method_style.h"
+#include "apps/runtime/json.h"
 #include "io/csv_file.h"
 #include "io/file.h"
 #include "kernel/error.h"
@@ -15,8 +16,6 @@
 
 namespace corral {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string path_in(const RunFolder& run, const std::string& name) {
   return (std::filesystem::path(run.folder) / name).string();

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The answer of a unit as JSON: numbers read back as the same doubles.
-#include <nlohmann/json.hpp>
-
+#include "apps/runtime/json.h"
 #include "apps/study/evaluate_unit.h"
 #include "kernel/error.h"
 
 namespace corral {
 namespace {
-
-using Json = nlohmann::json;
-
-template <class Value>
-Json json_of(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 std::optional<double> number_of(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional<double>(json.get<double>());
@@ -33,8 +25,8 @@ std::vector<int> counts_of(const Json& json) {
 }
 
 Json to_json(const PoseScores& scores) {
-  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.mean_error_pr),
-          json_of(scores.rmse_pr), json_of(scores.add_share)};
+  return {json_or_null(scores.rotation_error_deg), json_or_null(scores.translation_error_pr),
+          json_or_null(scores.mean_error_pr), json_or_null(scores.rmse_pr), json_or_null(scores.add_share)};
 }
 
 PoseScores pose_scores_of(const Json& json) {
@@ -44,12 +36,12 @@ PoseScores pose_scores_of(const Json& json) {
 
 Json to_json(const TaskResult& task) {
   return {{"status", task.status},
-          {"selected", json_of(task.selected)},
+          {"selected", json_or_null(task.selected)},
           {"correct", task.correct},
           {"initial", to_json(task.initial)},
           {"refined", to_json(task.refined)},
           {"dense", to_json(task.dense)},
-          {"time_ms", json_of(task.time_ms)}};
+          {"time_ms", json_or_null(task.time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
@@ -86,7 +78,7 @@ std::string unit_result_text(const UnitResult& result) {
   Json tasks = Json::array(), oracles = Json::array(), frames = Json::array();
   for (const TaskResult& task : result.tasks) tasks.push_back(to_json(task));
   for (const TaskResult& oracle : result.oracles) oracles.push_back(to_json(oracle));
-  for (const auto& share : result.frame_share) frames.push_back(json_of(share));
+  for (const auto& share : result.frame_share) frames.push_back(json_or_null(share));
   return Json{{"failure", result.failure},
               {"resolution", result.resolution},
               {"source_points", result.source_points},

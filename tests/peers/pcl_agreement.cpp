@@ -90,7 +90,7 @@ bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).
 
 void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints,
                   const Points& normals) {
-  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, "pcl");
+  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, ShotForm::PclBug);
   const Shot theirs = surface.shot(keypoints, 15 * resolution);
   std::size_t both = 0, same_frame = 0, flipped = 0, same = 0, valid = 0, next = 0;
   double largest = 0;

@@ -252,9 +252,10 @@ TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
 }
 
 TEST_F(Evaluate, NumbersOfMatchesAreBinnedAsTheyTurnOut) {
-  place_.put("small.toml", replaced(replaced(replaced(kSmallExperiment, "noise_pr", "matches"),
-                                             "levels = [0.05, 0.25, 0.45]", "bins = [[10, 100], [100, 1000]]"),
-                                    "keypoint_radius_pr = 2.5", "keypoint_radii_pr = [2.5, 6, 30]"));
+  place_.put("small.toml",
+             replaced(replaced(replaced(kSmallExperiment, "noise_pr", "matches"), "levels = [0.05, 0.25, 0.45]",
+                               "bins = [[10, 100], [100, 1000]]"),
+                      "[options.uniform]\nspacing_pr = 2.5", "[vary.uniform]\nspacing_pr = [2.5, 6, 30]"));
   ASSERT_EQ(evaluate("-o run").status, 0);
   std::map<std::string, int> levels;
   for (const StudyRecord& record : read_run(place_ / "run").records) {

@@ -10,7 +10,6 @@
 namespace corral {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(StageReport, SaysTheCountsAndTheHints) {
@@ -46,19 +45,6 @@ TEST(StageReport, TellsWhatTheInspectionFound) {
   report.source.topology->misoriented_faces = 4;
   EXPECT_THAT(stage_report(report), HasSubstr("7 faces, 3 components, 4 misoriented faces, pr"));
   EXPECT_EQ(to_json(report)["source"]["topology"]["components"], 3);
-}
-
-TEST(ToJson, SettingsAreWhatResultsDependOn) {
-  MatchSettings settings;
-  std::vector<std::string> keys;
-  const Json json = to_json(settings);
-  for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, ElementsAre("resolution_rule", "detector", "keypoint_radius_pr", "support_radius_pr", "normals",
-                                "sensor", "shot", "matcher", "mutual"));
-  settings.threads = 7;
-  EXPECT_EQ(to_json(settings), json);
-  settings.detector = "harris-mesh";
-  EXPECT_EQ(to_json(settings)["harris_mesh"]["neighborhood"], "adaptive");
 }
 
 }  // namespace

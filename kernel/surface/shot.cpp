@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -169,14 +169,6 @@ enum class Outcome : char { Described, SmallSupport, NoFrame, NoHistogram };
 
 }  // namespace
 
-void ShotOptions::validate() const {
-  require_positive("describe_shot", "radius_pr", radius_pr);
-  if (minimum_support < 0)
-    throw InvalidInput("describe_shot", "minimum_support", std::to_string(minimum_support), "at least 0");
-  if (form != "additive" && form != "pcl" && form != "product")
-    throw InvalidInput("describe_shot", "form", "'" + form + "'", "additive|pcl|product");
-}
-
 void Support::add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal) {
   const double length = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z());
   if (!(length > 0)) return;
@@ -226,7 +218,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
                           const ShotOptions& options, const ParallelFor& parallel) {
   require_positive("describe_shot", "resolution", resolution);
-  options.validate();
+  validate_options(options, "describe_shot");
   if (normals.rows() != vertices.rows())
     throw InvalidInput("describe_shot", "number of normals", std::to_string(normals.rows()),
                        "one per vertex, " + std::to_string(vertices.rows()));
@@ -235,7 +227,7 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
       throw InvalidInput("describe_shot", "keypoint", std::to_string(vertex),
                          "vertices 0 .. " + std::to_string(vertices.rows() - 1));
   const double radius = options.radius_pr * resolution;
-  const SupportFinder finder(vertices, normals, radius, options.form != "pcl");
+  const SupportFinder finder(vertices, normals, radius, options.form != ShotForm::PclBug);
   const auto order = finder.walk(keypoints);
 
   const auto count = static_cast<Eigen::Index>(keypoints.size());

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/harris.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "kernel/error.h"
@@ -121,7 +120,7 @@ Eigen::VectorXd harris_response(const Points& vertices, double radius, const Par
 Keypoints detect_harris(const Points& vertices, double resolution, const HarrisOptions& options,
                         const ParallelFor& parallel) {
   require_positive("detect_harris", "resolution", resolution);
-  require_positive("detect_harris", "radius_pr", options.radius_pr);
+  validate_options(options, "detect_harris");
   const double radius = options.radius_pr * resolution;
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
@@ -129,22 +128,6 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   const AlignedColumn response = HarrisOperator(grid, around, radius).run(parallel);
   keypoints.vertices = sorted_rows(grid, local_maxima(grid, around, response, {radius * radius, kSmallestResponse}));
   keypoints.candidates = static_cast<int>(keypoints.vertices.size());
-  return keypoints;
-}
-
-Keypoints detect_uniform(const Points& vertices, double resolution, double spacing_pr) {
-  require_positive("detect_uniform", "resolution", resolution);
-  require_positive("detect_uniform", "spacing_pr", spacing_pr);
-  const PointGrid grid(vertices, spacing_pr * resolution);
-  Keypoints keypoints;
-  for (int cell = 0; cell < grid.cells(); ++cell) {
-    std::pair<double, int> nearest{std::numeric_limits<double>::infinity(), 0};
-    for (int slot = grid.begin(cell); slot < grid.end(cell); ++slot)
-      nearest = std::min(nearest, {grid.from_middle(slot), grid.row(slot)});
-    keypoints.vertices.push_back(nearest.second);
-  }
-  std::sort(keypoints.vertices.begin(), keypoints.vertices.end());
-  keypoints.candidates = static_cast<int>(vertices.rows());
   return keypoints;
 }
 
