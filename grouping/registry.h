@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/pair/match_pair.h"
-#include "grouping/options.h"
 #include "kernel/evaluation.h"
+#include "kernel/options.h"
 #include "kernel/rigid_transform.h"
 
 namespace corral {

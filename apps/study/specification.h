@@ -9,7 +9,7 @@
 
 #include "apps/pair/match_pair.h"
 #include "apps/results/run_folder.h"
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral {
 

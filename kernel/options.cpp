@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral::detail {
 
