@@ -2,13 +2,13 @@
 #include "kernel/surface/keypoints.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "kernel/error.h"
-#include "kernel/number_text.h"
+#include "kernel/surface/crowd_limit.h"
+#include "kernel/surface/local_maxima.h"
 #include "kernel/surface/plane_fit.h"
 #include "kernel/surface/search/point_grid.h"
 
@@ -16,8 +16,6 @@ namespace corral {
 namespace {
 
 constexpr double kSmallestResponse = 1e-9;
-constexpr std::int64_t kLargestMeanNeighborhood = 500;
-constexpr std::int64_t kAlwaysAccepted = 20000000;  // neighbours in all
 constexpr int kCellsPerBlock = 256;
 
 int block_count(const PointGrid& grid) { return (grid.cells() + kCellsPerBlock - 1) / kCellsPerBlock; }
@@ -29,7 +27,7 @@ class HarrisOperator {
       : grid_(grid),
         around_(around),
         squared_(radius * radius),
-        most_(std::max(kAlwaysAccepted, kLargestMeanNeighborhood * grid.size())),
+        crowd_({"detect_harris", "keypoint radius", radius, 500, 30}, grid.size()),
         fits_(grid.size()),
         response_(grid.x().size(), 0.0) {}
 
@@ -61,20 +59,10 @@ class HarrisOperator {
       places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
         neighbors += fits_.fit<Lanes>(static_cast<std::size_t>(slot), grid_, places, squared_);
-        if (neighbors > most_) count(neighbors);  // a crowd: to its end it would take long
+        if (crowd_.is_exceeded_by(neighbors)) crowd_.add(neighbors);  // to the end of a crowd it would take long
       }
     }
-    count(neighbors);
-  }
-
-  /// Refuses a radius that holds so many vertices that it cannot be meant.
-  void count(std::int64_t neighbors) {
-    if ((neighbors_ += neighbors) > most_)
-      throw InvalidInput("detect_harris", "keypoint radius",
-                         to_text(std::sqrt(squared_)) + " mesh units, which holds over " +
-                             std::to_string(kLargestMeanNeighborhood) + " vertices on average",
-                         "a radius that holds about 30 (is the resolution in the unit of this mesh, or do many "
-                         "vertices share one place?)");
+    crowd_.add(neighbors);
   }
 
   template <class Lanes>
@@ -113,79 +101,9 @@ class HarrisOperator {
   const PointGrid& grid_;
   const CellNeighborhoods& around_;
   double squared_;
-  std::int64_t most_;  // neighbours in all
+  CrowdLimit crowd_;
   PlaneFits fits_;
   AlignedColumn response_;
-  std::atomic<std::int64_t> neighbors_{0};
-};
-
-/// The rows of the slots that have the largest value within a radius, and at least the smallest accepted one.
-class LocalMaxima {
- public:
-  LocalMaxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& response, double radius)
-      : grid_(grid), around_(around), response_(response), squared_(radius * radius) {}
-
-  Indices find() const {
-    Indices maxima;
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      for (int cell = 0; cell < grid_.cells(); ++cell) {
-        const int first = grid_.begin(cell), last = grid_.end(cell);
-        int top = first;
-        for (int slot = first; slot < last; ++slot)
-          if (at(slot) > at(top)) top = slot;
-        for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
-          if (at(slot) >= kSmallestResponse && !is_beaten(slot, top) &&
-              is_highest<Lanes>(slot, around_.begin(cell), around_.end(cell)))
-            maxima.push_back(grid_.row(slot));
-      }
-    });
-    std::sort(maxima.begin(), maxima.end());
-    return maxima;
-  }
-
- private:
-  double at(int slot) const { return response_[static_cast<std::size_t>(slot)]; }
-
-  /// Whether another slot within the radius is higher, or as high with a lower row.
-  bool is_beaten(int slot, int other) const {
-    const auto i = static_cast<std::size_t>(slot), j = static_cast<std::size_t>(other);
-    if (response_[j] < response_[i]) return false;
-    const double x = grid_.x()[j] - grid_.x()[i], y = grid_.y()[j] - grid_.y()[i], z = grid_.z()[j] - grid_.z()[i];
-    return x * x + y * y + z * z <= squared_ && (response_[j] > response_[i] || grid_.row(other) < grid_.row(slot));
-  }
-
-  /// Whether no slot of some ranges beats one. The range of its own cell comes first: most are beaten there.
-  template <class Lanes>
-  CORRAL_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
-    const SlotRange* const home = std::find_if(first, last, [&](const SlotRange& range) { return slot < range.end; });
-    if (beats<Lanes>(*home, slot)) return false;
-    for (const SlotRange* range = first; range != last; ++range)
-      if (range != home && beats<Lanes>(*range, slot)) return false;
-    return true;
-  }
-
-  /// Whether a slot of a range beats another one.
-  template <class Lanes>
-  CORRAL_INLINE bool beats(const SlotRange& range, int slot) const {
-    const auto own = static_cast<std::size_t>(slot);
-    const Lanes response = Lanes::fill(response_[own]), x = Lanes::fill(grid_.x()[own]),
-                y = Lanes::fill(grid_.y()[own]), z = Lanes::fill(grid_.z()[own]), squared = Lanes::fill(squared_);
-    for (int i = range.begin; i < range.end; i += kLanes) {
-      const auto at = static_cast<std::size_t>(i);
-      const Lanes dx = Lanes::load(&grid_.x()[at]) - x, dy = Lanes::load(&grid_.y()[at]) - y,
-                  dz = Lanes::load(&grid_.z()[at]) - z;
-      unsigned left = bits(response <= Lanes::load(&response_[at])) & bits(dx * dx + dy * dy + dz * dz <= squared);
-      for (; left != 0; left &= left - 1)  // those behind the range count as well
-        if (is_beaten(slot, i + __builtin_ctz(left))) return true;
-    }
-    return false;
-  }
-
-  const PointGrid& grid_;
-  const CellNeighborhoods& around_;
-  const AlignedColumn& response_;
-  double squared_;
 };
 
 }  // namespace
@@ -209,7 +127,7 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   const CellNeighborhoods around(grid, 1);
   Keypoints keypoints;
   const AlignedColumn response = HarrisOperator(grid, around, radius).run(parallel);
-  keypoints.vertices = LocalMaxima(grid, around, response, radius).find();
+  keypoints.vertices = sorted_rows(grid, local_maxima(grid, around, response, {radius * radius, kSmallestResponse}));
   keypoints.candidates = static_cast<int>(keypoints.vertices.size());
   return keypoints;
 }
