@@ -7,7 +7,7 @@
 #include "kernel/local_reference_frame.h"
 #include "kernel/parallel.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/vectorized.h"
+#include "kernel/surface/support.h"
 
 namespace corral {
 
@@ -21,17 +21,6 @@ struct ShotOptions {
 
   /// Throws InvalidInput.
   void validate() const;
-};
-
-/// The support of a point: the vertices around it, column by column, without those at the point itself.
-struct Support {
-  AlignedColumn x, y, z;     ///< from the point, mesh units
-  AlignedColumn distance;    ///< > 0
-  AlignedColumn nx, ny, nz;  ///< unit normals; zero where there is none
-  int count = 0;
-
-  /// Adds a vertex; at distance 0 it is passed over.
-  void add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
 };
 
 /// The repeatable frame of the surface around a point (rows x, y, z).
