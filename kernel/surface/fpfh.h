@@ -47,18 +47,18 @@ struct FpfhOptions {
 /// and each of the three histograms scaled to the sum 100, as in PCL. A value at the border of two bins is in that nearer to
 /// the middle.
 ///
-/// Source    [rusu2009fpfh] section III; order of the bins and scale as in PCL 1.13. R as for SHOT, so that both describe
-///           the same support.
-/// Cost      O(V m) time, m vertices within R, for all V vertices within R of a keypoint; 144 bytes for each of them. Any
-///           number of threads, and any numbering of the vertices, gives the same bits.
+/// Source    [rusu2009fpfh]; order of the bins and scale as in PCL 1.13. R is that of SHOT, so that both describe the same
+///           support.
+/// Cost      O(V m) time, m vertices within R, for all V vertices within R of a keypoint; about 150 bytes for each of them.
+///           Any number of threads, and any numbering of the vertices, gives the same bits.
 /// Throws    InvalidInput if an option, the resolution or a keypoint is out of range, the normals are not as many as the
 ///           vertices, or R holds over 10000 vertices on average (and over 2e7 in all).
-/// Departs   The paper weighs by 1 / distance in a space that it leaves open: here the distance is in units of R, so that
-///           the unit of the mesh has no effect. A pair without v (the line is within 1e-6 rad of u) has no angles and is left
-///           out; so is one with a normal that is zero or not finite. From PCL 1.13, with `pcl`: nothing but this: there
-///           pairs without a normal count too, vertices in one place are pairs in the middle bins, pairs are without v only
-///           if v is exactly zero, and all arithmetic is in float. What `pcl` takes over: S(p) is left out of FPFH(p), its
-///           weights 1 / |p_j - p|^2, pairs without v in the middle bins of all angles, vertices at exactly R outside.
+/// Departs   The paper weighs by 1 / distance in a space that it leaves open: here distances are in units of R, so that the
+///           unit of the mesh has no effect. A pair whose line is within 1e-6 rad of u has no v, and is left out; so is a
+///           pair with a normal that is zero or not finite.
+///           `pcl` is the descriptor of PCL 1.13: FPFH(p) without S(p), weights 1 / |p_j - p|^2, pairs without v in the
+///           middle bins, vertices at exactly R outside. What is left of PCL's differences: there pairs with a zero normal,
+///           and of vertices in one place, count in middle bins too, and all arithmetic is in float.
 Descriptors describe_fpfh(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
                           const FpfhOptions& options = {}, const ParallelFor& parallel = one_by_one);
 

@@ -52,12 +52,12 @@ struct IssOptions {
 /// A keypoint has the largest saliency of all vertices nearer than r_non_max, and at least `minimum_neighbors` vertices
 /// nearer than r_salient and nearer than r_non_max.
 ///
-/// Source    [zhong2009iss]; radii, thresholds and the smallest number of neighbours as in the example that the
-///           documentation of PCL's ISSKeypoint3D gives, which most evaluations took over.
+/// Source    [zhong2009iss]; the values of all options but r_density are those of the example in the documentation of PCL's
+///           ISSKeypoint3D.
 /// Cost      O(V m) time, m vertices within the largest radius; O(V) memory. Any number of threads gives the same bits.
 /// Throws    InvalidInput if an option or `resolution` is out of range, or if the largest radius holds over 2000 vertices on
 ///           average (and over 2e7 in all).
-/// Departs   The paper gives no r_density: 2 pr hold about a dozen vertices. An e3 of at most 1e-9 e1 is flat ground and no
+/// Departs   r_density is a choice of ours: 2 pr hold about a dozen vertices. An e3 of at most 1e-9 e1 is flat ground and no
 ///           saliency. Ties go to the lower index. From PCL 1.13, with `none`: there all vertices of a tie stay; e3 above 0
 ///           is enough, so that rounding makes keypoints on flat ground; a vertex whose e3 rounding makes negative gets
 ///           whatever stood in memory; distances are floats. PCL's test for vertices at a border (off unless a radius is
