@@ -17,6 +17,7 @@
 namespace corral {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::reference_iss;
@@ -124,7 +125,17 @@ TEST(IssSaliency, IsTheSmallestEigenvalueOnAnAxisCross) {
   EXPECT_EQ(iss_saliency(cloud(cross), 1, options)(0), 0);
 }
 
-TEST(DetectIss, TheCornerOfABoxIsAKeypoint) {
+TEST(DetectIss, TheTopOfAPyramidIsTheOnlyKeypoint) {
+  Points pyramid(15 * 15, 3);
+  for (int row = 0; row < pyramid.rows(); ++row) {
+    const int x = row % 15 - 7, y = row / 15 - 7;
+    pyramid.row(row) << x, 0.9 * y, 0.8 * (7 - std::max(std::abs(x), std::abs(y)));
+  }
+  for (const IssWeights weights : kBoth)
+    EXPECT_THAT(detect_iss(cloud(pyramid), 1, {4, 4, 2, 0.975, 0.975, 5, weights}).vertices, ElementsAre(7 * 15 + 7));
+}
+
+TEST(DetectIss, AKeypointOfABoxIsNearItsCorner) {
   // Three faces of different size, so that the eigenvalues at the corner differ.
   std::vector<testing::Row3> rows{{0, 0, 0}};
   for (int a = 0; a <= 12; ++a)
