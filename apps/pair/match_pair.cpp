@@ -9,6 +9,7 @@
 #include "apps/runtime/workers.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/search/resolution.h"
+#include "kernel/surface/shot.h"
 
 namespace corral {
 namespace {
@@ -26,7 +27,11 @@ SurfaceFeatures describe(const Mesh& mesh, const Points& normals, double resolut
   stage("descriptors", [&] {
     features.descriptors =
         settings.configured_descriptor().describe({mesh.vertices, normals, keypoints.vertices, resolution, parallel});
-    if (settings.frames == LocalFrames::None) features.descriptors.frames.clear();
+    if (settings.frames == LocalFrames::None)
+      features.descriptors.frames.clear();
+    else if (!find_descriptor(settings.descriptor).has_frames)
+      add_shot_frames(mesh.vertices, resolution, parse_options<ShotOptions>(settings.options_of("shot"), "shot"),
+                      features.descriptors, parallel);
   });
   features.candidates = keypoints.candidates;
   features.keypoints = static_cast<int>(keypoints.vertices.size());

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/registry.h"
 
+#include "kernel/surface/fpfh.h"
 #include "kernel/surface/harris.h"
 #include "kernel/surface/harris_mesh.h"
+#include "kernel/surface/iss.h"
 #include "kernel/surface/shot.h"
 #include "kernel/surface/uniform.h"
 
@@ -48,6 +50,11 @@ const std::vector<Detector>& detectors() {
           [](const DetectorInput& in, const HarrisMeshOptions& options) {
             return detect_harris_mesh(in.mesh, in.resolution, options);
           }),
+      entry<IssOptions>({"iss", "Intrinsic shape signatures (ISS)",
+                         "neighbours spread in three directions, differently in each", "zhong2009iss"},
+                        [](const DetectorInput& in, const IssOptions& options) {
+                          return detect_iss(in.mesh, in.resolution, options, in.parallel);
+                        }),
       entry<UniformOptions>({"uniform", "Uniform sampling", "one vertex of every cube of a lattice, a control", ""},
                             [](const DetectorInput& in, const UniformOptions& options) {
                               return detect_uniform(in.mesh.vertices, in.resolution, options);

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/surface/search/point_grid.h"
+#include "kernel/surface/keep_described.h"
 
 namespace corral {
 namespace {
@@ -61,125 +61,7 @@ std::array<int, 2> count_ahead(const std::array<Eigen::Vector3d, 2>& axes, const
   return ahead;
 }
 
-/// The support of every vertex that is asked for, through a grid.
-class SupportFinder {
- public:
-  SupportFinder(const Points& vertices, const Points& normals, double radius, bool rim)
-      : grid_(PointGrid::for_radius(vertices, radius, kReach)),
-        nx_(grid_.by_slot(normals.col(0))),
-        ny_(grid_.by_slot(normals.col(1))),
-        nz_(grid_.by_slot(normals.col(2))),
-        squared_(  // finite: the padding of the grid is not near
-            std::min(rim ? radius * radius : std::nextafter(radius * radius, 0), std::numeric_limits<double>::max())),
-        slots_(static_cast<std::size_t>(grid_.size())) {
-    for (int slot = 0; slot < grid_.size(); ++slot) slots_[static_cast<std::size_t>(grid_.row(slot))] = slot;
-  }
-
-  /// The order in which walking over the cells meets some vertices.
-  std::vector<std::size_t> walk(const Indices& vertices) const {
-    std::vector<std::size_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return std::make_pair(slot_of(vertices[a]), a) < std::make_pair(slot_of(vertices[b]), b);
-    });
-    return order;
-  }
-
-  /// Where a walk has come to.
-  struct Place {
-    CellSweep sweep;
-    int end = 0;                    // of the slots of the cell
-    std::vector<SlotRange> around;  // it
-  };
-  Place start() const { return {CellSweep(grid_, kReach), 0, {}}; }
-
-  /// Vertices must come in the order of walk().
-  void find(int vertex, Place& place, Support& support) const {
-    const int slot = slot_of(vertex);
-    if (slot >= place.end) move_to(grid_.cell_of(slot), place, support);
-    collect(static_cast<std::size_t>(slot), place.around, support);
-    measure(support);
-  }
-
- private:
-  static constexpr int kReach = 2;  // cells of half the radius waste fewer looks than cells of the radius
-
-  int slot_of(int vertex) const { return slots_[static_cast<std::size_t>(vertex)]; }
-
-  void move_to(int cell, Place& place, Support& support) const {
-    place.end = grid_.end(cell);
-    place.around.clear();
-    place.sweep.around(cell, place.around);
-    std::size_t most = kLanes;
-    for (const SlotRange& range : place.around) most += static_cast<std::size_t>(range.end - range.begin);
-    for (AlignedColumn* column :
-         {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
-      if (column->size() < most) column->resize(2 * most);
-  }
-
-  void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      const Lanes x = Lanes::fill(grid_.x()[slot]), y = Lanes::fill(grid_.y()[slot]), z = Lanes::fill(grid_.z()[slot]),
-                  squared = Lanes::fill(squared_), zero = Lanes::fill(0);
-      const double* const from[] = {grid_.x().data(), grid_.y().data(), grid_.z().data(),
-                                    nx_.data(),       ny_.data(),       nz_.data()};
-      double* const to[] = {support.x.data(),  support.y.data(),  support.z.data(),
-                            support.nx.data(), support.ny.data(), support.nz.data()};
-      std::size_t count = 0;
-      int at = 0;
-      // By whole cache lines: what else stands in them lies beyond the radius, or in the next range, which goes on behind.
-      for (const SlotRange& range : ranges)
-        for (at = std::max(at, range.begin / kLanes * kLanes); at < range.end; at += kLanes) {
-          const Lanes dx = Lanes::load(from[0] + at) - x, dy = Lanes::load(from[1] + at) - y,
-                      dz = Lanes::load(from[2] + at) - z, away = dx * dx + dy * dy + dz * dz;
-          const unsigned chosen = bits(away <= squared) & bits(zero < away);
-          if (chosen == 0) continue;
-          dx.pack(chosen, to[0] + count), dy.pack(chosen, to[1] + count), dz.pack(chosen, to[2] + count);
-          for (int i = 3; i < 6; ++i) Lanes::load(from[i] + at).pack(chosen, to[i] + count);
-          count += static_cast<std::size_t>(__builtin_popcount(chosen));
-        }
-      support.count = static_cast<int>(count);
-    });
-  }
-
-  /// The distances, and nothing in the padding.
-  static void measure(Support& support) {
-    const auto count = static_cast<std::size_t>(support.count), end = static_cast<std::size_t>(padded(support.count));
-    for (AlignedColumn* column :
-         {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
-      std::fill(column->begin() + static_cast<std::ptrdiff_t>(count),
-                column->begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      for (std::size_t i = 0; i < end; i += kLanes) {
-        const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
-        square_root(x * x + y * y + z * z).store(&support.distance[i]);
-      }
-    });
-  }
-
-  PointGrid grid_;
-  AlignedColumn nx_, ny_, nz_;
-  double squared_;
-  std::vector<int> slots_;  // by vertex
-};
-
-enum class Outcome : char { Described, SmallSupport, NoFrame, NoHistogram };
-
 }  // namespace
-
-void Support::add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal) {
-  const double length = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z());
-  if (!(length > 0)) return;
-  const auto at = static_cast<std::size_t>(count++);
-  const double values[] = {offset.x(), offset.y(), offset.z(), length, normal.x(), normal.y(), normal.z()};
-  const double* value = values;
-  for (AlignedColumn* column : {&x, &y, &z, &distance, &nx, &ny, &nz}) {
-    column->resize(static_cast<std::size_t>(padded(count)), 0.0);
-    (*column)[at] = *value++;
-  }
-}
 
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius) {
   if (support.count < kSmallestFrame) return std::nullopt;
@@ -219,58 +101,50 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
                           const ShotOptions& options, const ParallelFor& parallel) {
   require_positive("describe_shot", "resolution", resolution);
   validate_options(options, "describe_shot");
-  if (normals.rows() != vertices.rows())
-    throw InvalidInput("describe_shot", "number of normals", std::to_string(normals.rows()),
-                       "one per vertex, " + std::to_string(vertices.rows()));
-  for (const int vertex : keypoints)
-    if (vertex < 0 || vertex >= vertices.rows())
-      throw InvalidInput("describe_shot", "keypoint", std::to_string(vertex),
-                         "vertices 0 .. " + std::to_string(vertices.rows() - 1));
+  require_keypoints("describe_shot", vertices, normals, keypoints);
   const double radius = options.radius_pr * resolution;
-  const SupportFinder finder(vertices, normals, radius, options.form != ShotForm::PclBug);
-  const auto order = finder.walk(keypoints);
-
-  const auto count = static_cast<Eigen::Index>(keypoints.size());
+  const SupportFinder finder(vertices, normals, radius, options.form == ShotForm::PclBug ? Rim::Outside : Rim::Inside);
   Descriptors descriptors;
-  LocalReferenceFrames frames(keypoints.size());
+  descriptors.frames.resize(keypoints.size());
+  descriptors.features.resize(kShotSize, static_cast<Eigen::Index>(keypoints.size()));
   std::vector<Outcome> outcomes(keypoints.size());
-  descriptors.features.resize(kShotSize, count);
-  constexpr std::size_t kBlock = 64;
-  parallel(static_cast<int>((order.size() + kBlock - 1) / kBlock), [&](int block) {
-    auto place = finder.start();
-    Support support;
-    for (std::size_t at = static_cast<std::size_t>(block) * kBlock;
-         at < std::min(order.size(), (static_cast<std::size_t>(block) + 1) * kBlock); ++at) {
-      const std::size_t i = order[at];
-      finder.find(keypoints[i], place, support);
-      outcomes[i] = Outcome::SmallSupport;
-      if (support.count < options.minimum_support) continue;
-      outcomes[i] = Outcome::NoFrame;
-      const auto frame = shot_frame(support, radius);
-      if (!frame) continue;
-      outcomes[i] = Outcome::NoHistogram;
-      const auto histogram = shot_histogram(support, *frame, radius, options.form);
-      if (!histogram) continue;
+  visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
+    outcomes[i] = Outcome::SmallSupport;
+    if (support.count < options.minimum_support) return;
+    outcomes[i] = Outcome::NoFrame;
+    const auto frame = shot_frame(support, radius);
+    if (!frame) return;
+    outcomes[i] = Outcome::NoHistogram;
+    const auto histogram = shot_histogram(support, *frame, radius, options.form);
+    if (!histogram) return;
+    outcomes[i] = Outcome::Described;
+    descriptors.frames[i] = *frame;
+    std::copy_n(histogram->data(), kShotSize, descriptors.features.col(static_cast<Eigen::Index>(i)).data());
+  });
+  keep_described(keypoints, outcomes, descriptors);
+  return descriptors;
+}
+
+void add_shot_frames(const Points& vertices, double resolution, const ShotOptions& options, Descriptors& descriptors,
+                     const ParallelFor& parallel) {
+  require_positive("add_shot_frames", "resolution", resolution);
+  validate_options(options, "add_shot_frames");
+  const Indices keypoints = std::move(descriptors.vertices);
+  const Points no_normals = Points::Zero(vertices.rows(), 3);
+  require_keypoints("add_shot_frames", vertices, no_normals, keypoints);
+  const double radius = options.radius_pr * resolution;
+  const SupportFinder finder(vertices, no_normals, radius,
+                             options.form == ShotForm::PclBug ? Rim::Outside : Rim::Inside);
+  descriptors.vertices.clear();
+  descriptors.frames.resize(keypoints.size());
+  std::vector<Outcome> outcomes(keypoints.size(), Outcome::NoFrame);
+  visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
+    if (const auto frame = shot_frame(support, radius)) {
+      descriptors.frames[i] = *frame;
       outcomes[i] = Outcome::Described;
-      frames[i] = *frame;
-      std::copy_n(histogram->data(), kShotSize, descriptors.features.col(static_cast<Eigen::Index>(i)).data());
     }
   });
-
-  Eigen::Index kept = 0;
-  for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    descriptors.dropped_small_support += outcomes[i] == Outcome::SmallSupport;
-    descriptors.dropped_no_frame += outcomes[i] == Outcome::NoFrame;
-    descriptors.dropped_no_histogram += outcomes[i] == Outcome::NoHistogram;
-    if (outcomes[i] != Outcome::Described) continue;
-    descriptors.vertices.push_back(keypoints[i]);
-    descriptors.frames.push_back(frames[i]);
-    if (kept < static_cast<Eigen::Index>(i))
-      descriptors.features.col(kept) = descriptors.features.col(static_cast<Eigen::Index>(i));
-    ++kept;
-  }
-  descriptors.features.conservativeResize(Eigen::NoChange, kept);
-  return descriptors;
+  keep_described(keypoints, outcomes, descriptors);
 }
 
 }  // namespace corral

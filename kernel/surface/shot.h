@@ -9,7 +9,7 @@
 #include "kernel/parallel.h"
 #include "kernel/surface/descriptors.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/vectorized.h"
+#include "kernel/surface/support.h"
 
 namespace corral {
 
@@ -34,17 +34,6 @@ struct ShotOptions {
     visit(OptionField{"form", "", "", "shares of a vote between bins: added, multiplied, or added as PCL does"},
           self.form);
   }
-};
-
-/// The support of a point: the vertices around it, column by column, without those at the point itself.
-struct Support {
-  AlignedColumn x, y, z;     ///< from the point, mesh units
-  AlignedColumn distance;    ///< > 0
-  AlignedColumn nx, ny, nz;  ///< unit normals; zero where there is none
-  int count = 0;
-
-  /// Adds a vertex; at distance 0 it is passed over.
-  void add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
 };
 
 /// The repeatable frame of the surface around a point (rows x, y, z).
@@ -80,5 +69,10 @@ std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const Loca
 ///           the vertices.
 Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
                           const ShotOptions& options = {}, const ParallelFor& parallel = one_by_one);
+
+/// Gives the frames of SHOT to descriptors that have none: the same bits as those of describe_shot. A keypoint without a frame
+/// is dropped and counted. Throws InvalidInput if an option, the resolution or a keypoint is out of range.
+void add_shot_frames(const Points& vertices, double resolution, const ShotOptions& options, Descriptors& descriptors,
+                     const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

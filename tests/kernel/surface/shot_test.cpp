@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/shot.h"
+#include "kernel/surface/harris.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -159,6 +160,39 @@ TEST(DescribeShot, NormalsAndKeypointsMustBelongToTheVertices) {
   EXPECT_THROW(describe_shot(vertices, vertices.topRows(161), {0}, 0.1), InvalidInput);
   EXPECT_THROW(describe_shot(vertices, vertices, {0, 162}, 0.1), InvalidInput);
   EXPECT_THROW(describe_shot(vertices, vertices, {-1}, 0.1), InvalidInput);
+}
+
+TEST(AddShotFrames, AreThoseOfTheDescriptor) {
+  const Mesh mesh = testing::bumpy_sphere(4, 1);
+  const double resolution = point_resolution(mesh.vertices);
+  const Indices rows = detect_harris(mesh.vertices, resolution).vertices;
+  const Descriptors expected = describe(mesh, rows, resolution);
+  ASSERT_EQ(expected.vertices, rows);
+  Descriptors found;
+  found.vertices = rows;
+  found.features = Eigen::MatrixXd::Random(5, static_cast<Eigen::Index>(rows.size()));
+  const Eigen::MatrixXd features = found.features;
+  add_shot_frames(mesh.vertices, resolution, {}, found);
+  EXPECT_EQ(found.vertices, rows);
+  EXPECT_TRUE(found.frames == expected.frames);
+  EXPECT_EQ(found.features, features);
+}
+
+TEST(AddShotFrames, AKeypointWithoutAFrameIsDropped) {
+  Mesh mesh = testing::bumpy_sphere(3, 1);
+  mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, Eigen::NoChange);
+  const auto alone = static_cast<int>(mesh.vertices.rows()) - 1;
+  mesh.vertices.row(alone).setConstant(100);
+  Descriptors found;
+  found.vertices = {3, alone, 5};
+  found.features = Eigen::MatrixXd::Identity(3, 3);
+  add_shot_frames(mesh.vertices, 0.1, {}, found);
+  EXPECT_EQ(found.vertices, (Indices{3, 5}));
+  EXPECT_EQ(found.frames.size(), 2u);
+  EXPECT_EQ(found.dropped_no_frame, 1);
+  EXPECT_EQ(found.features.col(1), Eigen::Vector3d::UnitZ());
+  found.vertices = {0, alone + 1};
+  EXPECT_THROW(add_shot_frames(mesh.vertices, 0.1, {}, found), InvalidInput);
 }
 
 TEST(DescribeShot, OptionsAreChecked) {
