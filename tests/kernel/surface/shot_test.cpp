@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/shot.h"
-#include "kernel/surface/harris.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "kernel/error.h"
+#include "kernel/surface/harris.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/resolution.h"
