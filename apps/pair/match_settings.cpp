@@ -46,8 +46,10 @@ void MatchSettings::validate() const {
     throw InvalidInput("match", "--sensor", "not a place", "three finite coordinates x,y,z");
   if (threads < 0 || threads > kMostThreads)
     throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
-  find_detector(detector);
-  find_descriptor(descriptor);
+  if (!look_up(detectors(), detector))
+    throw InvalidInput("match", "--detector", "'" + detector + "'", names_of(detectors()));
+  if (!look_up(descriptors(), descriptor))
+    throw InvalidInput("match", "--descriptor", "'" + descriptor + "'", names_of(descriptors()));
   const std::vector<std::string> used = in_use();
   for (const auto& [name, overrides] : options)
     if (!overrides.empty() && std::find(used.begin(), used.end(), name) == used.end())

@@ -88,7 +88,7 @@ TEST_F(Evaluate, AgreesWithRun) {
       place_
           .corral(
               "run data/b3r/m2.ply data/b3r/m2-0.25.ply --truth data/b3r/m2-0.25.txt --json --detector "
-              "uniform --keypoint-radius-pr 2.5 --support-radius-pr 8 --resolution source -o ran")
+              "uniform --set uniform.spacing_pr=2.5 --set shot.radius_pr=8 --resolution source -o ran")
           .json()["methods"];
   const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
   const StudyPair pair = read_run(place_ / "run").pairs.at("b3r/m2-0.25");

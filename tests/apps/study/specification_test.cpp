@@ -85,7 +85,7 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   for (const char* rows : {"0.5", "1e300"})
     EXPECT_THAT(error_of(testing::replaced(testing::replaced(kGood, "noise_pr", "table_size"), "0.05", rows)),
                 HasSubstr("whole numbers of rows"));
-  EXPECT_THAT(with("noise_pr", "si.similarity"), HasSubstr("not among the groupers"));
+  EXPECT_THAT(with("noise_pr", "si.similarity"), HasSubstr("an option of si, which is not in use"));
   EXPECT_THAT(with("noise_pr", "st.similarty"), HasSubstr("similarity"));
   EXPECT_THAT(with("repeats", "x") + with("levels = [0.05, 1]", "levels = [0.05, 1]\nrepeats = 0"),
               HasSubstr("repeats"));
@@ -145,8 +145,9 @@ TEST(Specification, OptionsOfTheCommandLineComeLast) {
 }
 
 TEST(Specification, TheProgramCarriesThePapersExperiments) {
-  EXPECT_THAT(built_in_experiments(), ElementsAre("clutter", "density", "detectors", "detectors-fpfh", "matches", "noise", "occlusion", "overlap",
-                                                  "threshold", "time", "tuning-consistency", "tuning-spectral"));
+  EXPECT_THAT(built_in_experiments(),
+              ElementsAre("clutter", "density", "detectors", "detectors-fpfh", "matches", "noise", "occlusion",
+                          "overlap", "threshold", "time", "tuning-consistency", "tuning-spectral"));
   std::string figures;
   for (const std::string& name : built_in_experiments()) {
     const Experiment experiment = read_experiment(name);
