@@ -11,9 +11,6 @@
 namespace corral {
 namespace {
 
-/// A source vertex is in the overlap if its true image has a target vertex this near.
-constexpr double kOverlapPr = 4;
-
 /// Scores what was found, and refines and judges its pose.
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
   if (truth)
@@ -33,7 +30,7 @@ PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransfor
 
 Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
                          double resolution) {
-  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution);
+  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPointsPr * resolution);
 }
 
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
