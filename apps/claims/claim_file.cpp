@@ -21,15 +21,18 @@ namespace {
 template <class Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
-const Words<Quantity> kQuantities = {{"precision", Quantity::Precision},
-                                     {"recall", Quantity::Recall},
-                                     {"f1", Quantity::F1},
-                                     {"time", Quantity::Time},
-                                     {"inlier ratio", Quantity::InlierRatio},
-                                     {"frame share", Quantity::FrameShare},
-                                     {"value", Quantity::Value},
-                                     {"agreement", Quantity::Agreement},
-                                     {"keypoints", Quantity::KeypointDensity}};
+/// Every measure that has a mean, and what else there is.
+Words<Quantity> quantities() {
+  Words<Quantity> words;
+  for (const Measure& measure : measures())
+    if (measure.absent != Absent::Infinite && measure.average != Average::Pooled)
+      words.push_back({measure.word(), {Quantity::Kind::Measure, &measure}});
+  words.push_back({"value", {Quantity::Kind::Value, nullptr}});
+  words.push_back({"agreement", {Quantity::Kind::Agreement, nullptr}});
+  words.push_back({"keypoints", {Quantity::Kind::KeypointDensity, nullptr}});
+  return words;
+}
+
 const Words<Take> kTakes = {{"each level", Take::EachLevel},
                             {"mean", Take::Mean},
                             {"range", Take::Range},
@@ -99,9 +102,7 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
 }
 
 /// One number for all methods together: of none of them can anything be said.
-bool has_one_number(const ClaimPart& part) {
-  return part.of >= Quantity::InlierRatio || part.take == Take::Correlation;
-}
+bool has_one_number(const ClaimPart& part) { return part.of.is_of_pairs() || part.take == Take::Correlation; }
 
 bool asks_for_methods(const ClaimPart& part) {
   const auto is_of_methods = [](const Operand& operand) {
@@ -128,7 +129,7 @@ class PartReader {
     if (const auto experiment = table_.text("experiment")) part.experiments.push_back(*experiment);
     if (part.experiments.empty()) table_.fail("experiment", "missing");
     part.with = table_.text("with").value_or("");
-    part.of = word_of(table_, "of", kQuantities, Quantity::F1);
+    part.of = word_of(table_, "of", quantities(), Quantity());
     part.take = word_of(table_, "take", kTakes, Take::EachLevel);
     part.where = word_of(table_, "where", kQuantifiers, Quantifier::Every);
     part.from = table_.number("from").value_or(part.from);

@@ -7,10 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "apps/results/measures.h"
+
 namespace corral {
 
-/// The number that a rule looks at: of a method at a level, or, from inlier_ratio on, of the pairs whatever the method.
-enum class Quantity { Precision, Recall, F1, Time, InlierRatio, FrameShare, Value, Agreement, KeypointDensity };
+/// The number that a rule looks at: a measure, or what else is known of the pairs.
+struct Quantity {
+  enum class Kind { Measure, Value, Agreement, KeypointDensity };
+  Kind kind = Kind::Measure;
+  const Measure* measure = &corral::measure("f1");  ///< of Kind::Measure
+
+  bool is_measure(const std::string& name) const { return kind == Kind::Measure && measure->name == name; }
+  bool is_time() const { return kind == Kind::Measure && measure->unit == "ms"; }
+  bool is_of_pairs() const { return kind != Kind::Measure || measure->has(kOfPair); }  ///< whatever the method
+};
 
 /// How the levels become one number for each method (or one alone), but for EachLevel; see claims.toml.
 enum class Take {
@@ -57,7 +67,7 @@ struct Comparison {
 struct ClaimPart {
   std::vector<std::string> experiments;
   std::string with;  ///< a second experiment
-  Quantity of = Quantity::F1;
+  Quantity of;
   Take take = Take::EachLevel;
   Quantifier where = Quantifier::Every;
   double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();

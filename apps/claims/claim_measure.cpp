@@ -66,9 +66,10 @@ double of_one_series(Take take, const Numbers& x, const Numbers& y) {
 }  // namespace
 
 Scale ClaimMeasure::scale() const {
-  const bool is_time = part_.of == Quantity::Time;
+  const bool is_time = part_.of.is_time();
   const bool is_logarithm = is_time && part_.take != Take::Slope && part_.take < Take::Wins;
-  return {is_time ? std::log(1 + book_.time_tau) : book_.tau, is_logarithm, is_time};
+  return {is_time ? std::log(1 + book_.time_tau) : book_.tau, is_logarithm,
+          part_.of.kind == Quantity::Kind::Measure && part_.of.measure->better == Better::Smaller};
 }
 
 std::vector<std::string> ClaimMeasure::labels() const {
@@ -84,7 +85,7 @@ Numbers ClaimMeasure::of_level(const Level& level, const Draws& draws) const {
   for (std::size_t i = 0; i < level.columns.size(); ++i) {
     double number = level.columns[i] ? mean_of(*level.columns[i], rows) : kAbsent;
     if (!level.second.empty() && level.columns[i]) number = (number + mean_of(*level.second[i], rows)) / 2;
-    numbers.push_back(part_.of == Quantity::Time ? std::log(number) : number);
+    numbers.push_back(part_.of.is_time() ? std::log(number) : number);
   }
   return part_.lead ? leads_of(numbers) : numbers;
 }
@@ -132,7 +133,7 @@ Numbers ClaimMeasure::of_series(const Draws& draws) const {
   std::vector<Numbers> series;  // of each method
   for (const Level& level : experiments_.front()) {
     const LevelTable& table = *level.source->table;
-    const double matches = mean_of(table.matches);
+    const double matches = mean_of(*table.column(measure("matches"), ""));
     x.push_back(part_.take == Take::Slope ? std::log(std::isnan(matches) ? table.level.middle() : matches)
                                           : table.level.middle());
     const Numbers numbers = of_level(level, draws);
@@ -186,11 +187,12 @@ Numbers ClaimMeasure::of_pairs(const Draws& draws) const {
     for (const Levels& levels : experiments_)
       for (const Level& level : levels) {
         const LevelTable& table = *level.source->table;
+        const RowNumbers& inlier_ratios = *table.column(measure("inlier_ratio"), "");
         rows += static_cast<double>(draws[level.source->slot].size());
         if (!level.columns[i] || part_.take == Take::PairCount) continue;
         for (const int row : draws[level.source->slot]) {
           const auto place = static_cast<std::size_t>(row);
-          const double number = (*level.columns[i])[place], ratio = table.inlier_ratio[place];
+          const double number = (*level.columns[i])[place], ratio = inlier_ratios[place];
           const bool is_any = part_.inlier_from <= 0 && part_.inlier_below > 1;
           if (std::isnan(number) || !(is_any || (ratio >= part_.inlier_from && ratio < part_.inlier_below))) continue;
           if (part_.take == Take::PairSpearman && std::isnan(table.value[place])) continue;

@@ -21,17 +21,16 @@ constexpr std::uint64_t kSeed = 1;
 
 /// The experiments of all runs, and how to draw from their pairs.
 struct Study {
-  std::vector<std::vector<ExperimentTable>> tables;  // of each run
   ClaimData data;
   std::vector<std::size_t> sizes;    // rows of each slot
   std::vector<std::uint64_t> seeds;  // of each slot: levels of the same pairs are drawn alike
   std::map<std::string, std::string> figures;
 };
 
-bool asks_for(const ClaimBook& book, const std::string& experiment, Quantity quantity) {
+bool asks_for(const ClaimBook& book, const std::string& experiment, Quantity::Kind kind) {
   for (const Claim& claim : book.claims)
     for (const ClaimPart& part : claim.parts)
-      if (part.of == quantity &&
+      if (part.of.kind == kind &&
           std::find(part.experiments.begin(), part.experiments.end(), experiment) != part.experiments.end())
         return true;
   return false;
@@ -58,8 +57,8 @@ void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, c
   if (study.data.count(name)) throw IoError(run.folder, "", "the experiment " + name + " stands in another run too");
   study.figures[name] = table.info.figure;
   std::vector<RowNumbers> agreement(table.levels.size()), keypoints(table.levels.size());
-  if (asks_for(book, name, Quantity::Agreement)) agreement = selection_agreement(run, table, book.methods);
-  if (asks_for(book, name, Quantity::KeypointDensity)) keypoints = keypoint_densities(run, table);
+  if (asks_for(book, name, Quantity::Kind::Agreement)) agreement = selection_agreement(run, table, book.methods);
+  if (asks_for(book, name, Quantity::Kind::KeypointDensity)) keypoints = keypoint_densities(run, table);
   std::vector<LevelSource>& sources = study.data[name];
   for (std::size_t i = 0; i < table.levels.size(); ++i) {
     const LevelTable& level = table.levels[i];
@@ -71,13 +70,10 @@ void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, c
   }
 }
 
-Study study_of(const ClaimBook& book, const std::vector<RunFolder>& runs) {
+Study study_of(const ClaimBook& book, const std::vector<StudyResults>& studies) {
   Study study;
-  study.tables.reserve(runs.size());  // the data points into them
-  for (const RunFolder& run : runs) {
-    study.tables.push_back(experiment_tables(run));
-    for (const ExperimentTable& table : study.tables.back()) add_experiment(study, book, run, table);
-  }
+  for (const StudyResults& results : studies)
+    for (const ExperimentTable& table : results.tables) add_experiment(study, book, *results.run, table);
   return study;
 }
 
@@ -156,16 +152,16 @@ std::string unit_of(const ClaimPart& part) {
     default:
       break;
   }
-  static const std::map<Quantity, std::string> names = {{Quantity::Precision, "precision"},
-                                                        {Quantity::Recall, "recall"},
-                                                        {Quantity::F1, "F1"},
-                                                        {Quantity::Time, "ln time"},
-                                                        {Quantity::InlierRatio, "inlier ratio"},
-                                                        {Quantity::FrameShare, "frame share"},
-                                                        {Quantity::Value, "of the axis"},
-                                                        {Quantity::Agreement, "Jaccard"},
-                                                        {Quantity::KeypointDensity, "keypoints"}};
-  return names.at(part.of);
+  switch (part.of.kind) {
+    case Quantity::Kind::Value:
+      return "of the axis";
+    case Quantity::Kind::Agreement:
+      return "Jaccard";
+    case Quantity::Kind::KeypointDensity:
+      return "keypoints";
+    default:
+      return (part.of.is_time() ? "ln " : "") + part.of.measure->title;
+  }
 }
 
 std::string levels_text(const Rule& rule, const std::vector<Outcome>& outcomes) {
@@ -256,8 +252,8 @@ std::string verdict_name(Verdict verdict) {
   }
 }
 
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<RunFolder>& runs) {
-  const Study study = study_of(book, runs);
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies) {
+  const Study study = study_of(book, studies);
   const Draws draws = all_rows(study);
   std::vector<ClaimVerdict> verdicts;
   for (const Claim& claim : book.claims) verdicts.push_back(judge(book, claim, study, draws));

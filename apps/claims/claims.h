@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/claims/claim_file.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_results.h"
 
 namespace corral {
 
@@ -38,7 +38,7 @@ struct ClaimVerdict {
   std::vector<std::string> figures;      ///< the panel of each, empty if it has none
 };
 
-/// Judges every claim on what several runs hold together. Throws InvalidInput if two of them have the same experiment.
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<RunFolder>& runs);
+/// Judges every claim on what several studies hold together. Throws InvalidInput if two of them have the same experiment.
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies);
 
 }  // namespace corral

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
 #include "apps/results/comparison.h"
+#include "apps/runtime/report.h"
 
 namespace corral {
 namespace {
@@ -70,9 +70,9 @@ std::string means_text(const MethodComparison& comparison) {
   return text;
 }
 
-std::string tests_text(const MethodComparison& comparison, Metric metric) {
+std::string tests_text(const MethodComparison& comparison, const Measure& measure) {
   TextTable table(
-      {"methods", "difference", "95 % interval", metric == Metric::Success ? "McNemar p" : "Wilcoxon p", "Holm's p"});
+      {"methods", "difference", "95 % interval", measure.has(kYesOrNo) ? "McNemar p" : "Wilcoxon p", "Holm's p"});
   for (const MethodPair& pair : comparison.tests)
     table.add({pair.first + " - " + pair.second, fixed(pair.difference.mean, 4), interval_text(pair.difference, 4),
                p_text(pair.p) + (pair.is_exact ? "" : "~"), p_text(pair.adjusted_p)});
@@ -86,13 +86,16 @@ std::string levels_text(const MethodComparison& comparison) {
   header.insert(header.end(), comparison.methods.begin(), comparison.methods.end());
   TextTable table(header);
   std::vector<std::string> row;
+  int pairs = 0;
   for (const LevelMean& mean : comparison.levels) {
     if (row.empty() || row.front() != mean.level) {
       if (!row.empty()) table.add(row);
       row.assign(header.size(), "");
       row[0] = mean.level;
+      pairs = 0;
     }
-    row[1] = std::to_string(std::max(mean.pairs, row[1].empty() ? 0 : std::stoi(row[1])));
+    pairs = std::max(mean.pairs, pairs);
+    row[1] = std::to_string(pairs);
     const auto column = std::find(header.begin() + 2, header.end(), mean.method) - header.begin();
     row[static_cast<std::size_t>(column)] =
         fixed(mean.mean.mean, 2) + " " + fixed(mean.mean.low, 2) + ".." + fixed(mean.mean.high, 2);
@@ -101,23 +104,23 @@ std::string levels_text(const MethodComparison& comparison) {
   return table.str();
 }
 
-std::string to_text(const MethodComparison& comparison, const std::string& metric) {
-  std::string text = comparison.experiment + ": " + metric + " on " + std::to_string(comparison.pairs) +
+std::string to_text(const MethodComparison& comparison, const Measure& measure) {
+  std::string text = comparison.experiment + ": " + measure.word() + " on " + std::to_string(comparison.pairs) +
                      (comparison.pairs == 1 ? " pair" : " pairs") +
                      " (all levels; empty selections count as 0, pairs without true matches are left out)\n";
   if (comparison.means.empty()) return text + "nothing to compare\n\n";
-  return text + means_text(comparison) + "\n" + tests_text(comparison, metric_of(metric)) +
+  return text + means_text(comparison) + "\n" + tests_text(comparison, measure) +
          "\nBy level, with the 95 % interval\n" + levels_text(comparison) + "\n";
 }
 
 int compare(const Settings& settings) {
-  const Metric metric = metric_of(settings.metric);
+  const Measure& measure = metric_of(settings.metric);
   std::vector<MethodComparison> comparisons;
   std::string names;
   for (const ExperimentTable& table : experiment_tables(read_run(settings.run))) {
     names += (names.empty() ? "" : ", ") + table.info.name;
     if (settings.experiment.empty() || settings.experiment == table.info.name)
-      comparisons.push_back(compare_methods(table, metric));
+      comparisons.push_back(compare_methods(table, measure));
   }
   if (comparisons.empty() && !settings.experiment.empty())
     throw UsageError("--experiment " + settings.experiment + ": the run has " + (names.empty() ? "none" : names));
@@ -125,7 +128,7 @@ int compare(const Settings& settings) {
   std::string text;
   for (const MethodComparison& comparison : comparisons) {
     json.push_back(to_json(comparison));
-    text += to_text(comparison, settings.metric);
+    text += to_text(comparison, measure);
   }
   if (settings.json)
     put("", Json{{"metric", settings.metric}, {"experiments", json}});

@@ -2,8 +2,8 @@
 // corral group: one grouper on a table of matches.
 #include "apps/commands/commands.h"
 #include "apps/pair/evaluate_pair.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/memory.h"
+#include "apps/runtime/report.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -33,7 +33,7 @@ int group(const Settings& settings) {
                  {"selected", nullptr},
                  {"time_ms", nullptr},
                  {"repeat", settings.repeat},
-                 {"status", refusal.empty() ? "grouped" : "too large: " + refusal}};
+                 {"status", refusal.empty() ? "grouped" : to_text(MethodStatus{MethodState::TooLarge, refusal})}};
   if (refusal.empty()) {
     const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
     report["selected"] = timed.found.selected.size();

@@ -52,10 +52,9 @@ std::string MethodRecord::outcome() const {
   return in_the_end ? (at_first ? "found" : "saved") : (at_first ? "spoiled" : "lost");
 }
 
-std::string MethodRecord::status() const {
-  if (!failure.empty()) return (is_too_large ? "too large: " : "failed: ") + failure;
-  if (pose.target_from_source && !pose.converged) return "not converged";
-  return to_text(pose.status);
+MethodStatus MethodRecord::status() const {
+  if (!failure.empty()) return {is_too_large ? MethodState::TooLarge : MethodState::Failed, failure};
+  return status_of(pose);
 }
 
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution) {

@@ -51,7 +51,7 @@ int keypoints_of(const Descriptors& descriptors) {
          descriptors.dropped_no_frame + descriptors.dropped_no_histogram;
 }
 
-/// Statuses are cells of a table.
+/// Causes are in cells of a table.
 std::string one_line(std::string text) {
   for (char& letter : text)
     if (letter == '\n' || letter == '\r') letter = ' ';
@@ -150,7 +150,8 @@ class PairStudy {
 
   TaskResult result_of(const MethodRecord& record) const {
     TaskResult result;
-    result.status = one_line(record.status());
+    result.status = record.status();
+    result.status.cause = one_line(result.status.cause);
     result.time_ms = record.time_ms;
     if (!record.failure.empty()) return result;
     result.selected = static_cast<int>(record.found.selected.size());

@@ -43,18 +43,17 @@ PoseScores pose_scores_of(const Json& json) {
 }
 
 Json to_json(const TaskResult& task) {
-  return {{"status", task.status},
-          {"selected", json_of(task.selected)},
-          {"correct", task.correct},
-          {"initial", to_json(task.initial)},
-          {"refined", to_json(task.refined)},
-          {"dense", to_json(task.dense)},
+  return {{"status", to_text(task.status)},   {"selected", json_of(task.selected)}, {"correct", task.correct},
+          {"initial", to_json(task.initial)}, {"refined", to_json(task.refined)},   {"dense", to_json(task.dense)},
           {"time_ms", json_of(task.time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
   TaskResult task;
-  task.status = json.at("status");
+  const std::string status = json.at("status");
+  const std::optional<MethodStatus> known = parse_status(status);
+  if (!known) throw InvalidInput("unit_result", "status", status, "a status of a method");
+  task.status = *known;
   if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
   task.correct = counts_of(json.at("correct"));
   task.initial = pose_scores_of(json.at("initial"));

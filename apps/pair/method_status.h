@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "refine/refine_rigid.h"
+
+namespace corral {
+
+/// How a method ended on a pair.
+enum class MethodState {
+  Unknown,
+  Refined,
+  NotConverged,  ///< a pose that was still moving
+  TooFewRows,    ///< no pose, as RefineStatus has it; so the next two
+  DegenerateGeometry,
+  Diverged,
+  Timed,     ///< a call of which only the time was taken
+  TooLarge,  ///< not asked, since it would need more memory than it may
+  Failed,    ///< no answer, or the pair could not be matched
+};
+
+struct MethodStatus {
+  MethodState state = MethodState::Unknown;
+  std::string cause = {};  ///< of TooLarge and Failed
+  bool operator==(const MethodStatus& other) const { return state == other.state && cause == other.cause; }
+};
+
+/// Of the refinement of a selection.
+MethodStatus status_of(const RefinedPose& pose);
+
+/// "refined", "not converged", "too few rows", "degenerate geometry", "diverged", "timed", "too large: CAUSE",
+/// "failed: CAUSE"; empty if unknown.
+std::string to_text(const MethodStatus& status);
+std::optional<MethodStatus> parse_status(const std::string& text);  ///< absent if it is none of these
+
+}  // namespace corral

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "apps/results/study_results.h"
+
+#include "apps/results/statistics.h"
+#include "io/csv_file.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+
+bool is_of_times(const ExperimentInfo& info) { return info.attribute == "table_size"; }
+
+std::vector<TimeRow> time_rows(const ExperimentInfo& info, const std::vector<StudyRecord>& records) {
+  std::vector<TimeRow> rows;
+  for (const StudyLevel& level : info.levels)
+    for (const std::string& method : info.methods) {
+      std::vector<double> times;
+      for (const StudyRecord& record : records)
+        if (record.experiment == info.name && record.level == level.label && record.method == method && record.time_ms)
+          times.push_back(*record.time_ms);
+      if (times.empty()) continue;
+      rows.push_back({info.name, info.dataset, level.label, method, static_cast<int>(times.size()),
+                      quantile_of(times, 0.5), mean_of(times), quantile_of(times, 0.25), quantile_of(times, 0.75)});
+    }
+  return rows;
+}
+
+std::string time_text(const std::vector<TimeRow>& rows) {
+  std::string text = csv_line({"experiment", "dataset", "level", "method", "runs", "median_ms", "mean_ms",
+                               "lower_quartile_ms", "upper_quartile_ms"});
+  for (const TimeRow& row : rows)
+    text +=
+        csv_line({row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs), to_text(row.median_ms),
+                  to_text(row.mean_ms), to_text(row.lower_quartile_ms), to_text(row.upper_quartile_ms)});
+  return text;
+}
+
+std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs) {
+  std::vector<StudyResults> results;
+  for (const RunFolder& run : runs) {
+    std::vector<ExperimentTable> tables = experiment_tables(run);
+    std::vector<SummaryRow> summary = summarize(tables);
+    results.push_back({&run, std::move(tables), std::move(summary)});
+  }
+  return results;
+}
+
+std::vector<RunFolder> read_runs(const std::vector<std::string>& folders) {
+  std::vector<RunFolder> runs;
+  for (const std::string& folder : folders) runs.push_back(read_run(folder));
+  return runs;
+}
+
+}  // namespace corral
