@@ -44,15 +44,11 @@ const Words<Take> kTakes = {{"each level", Take::EachLevel},
                             {"spearman", Take::Spearman},
                             {"slope", Take::Slope},
                             {"correlation", Take::Correlation},
-                            {"difference", Take::Difference},
-                            {"relative loss", Take::RelativeLoss},
                             {"wins", Take::Wins},
                             {"mean rank", Take::MeanRank},
-                            {"pair mean", Take::PairMean},
-                            {"pair median", Take::PairMedian},
-                            {"pair percentile", Take::PairPercentile},
-                            {"pair spearman", Take::PairSpearman},
-                            {"pair count", Take::PairCount}};
+                            {"percentile", Take::Percentile},
+                            {"count", Take::Count}};
+const Words<bool> kOver = {{"levels", false}, {"pairs", true}};
 const Words<Quantifier> kQuantifiers = {
     {"every", Quantifier::Every}, {"most", Quantifier::Most}, {"half", Quantifier::Half}, {"one", Quantifier::One}};
 const Words<Operand::Kind> kOperands = {{"all", Operand::Kind::All},
@@ -121,21 +117,21 @@ class PartReader {
   PartReader(const ClaimBook& book, TomlTable table) : book_(book), table_(std::move(table)) {}
 
   ClaimPart read() const {
-    table_.only({"experiment", "experiments", "with",     "of",    "take", "where",       "at",           "from",
-                 "to",         "last_levels", "first",    "last",  "lead", "inlier_from", "inlier_below", "percent",
+    table_.only({"experiment", "experiments", "with",     "of",    "take", "over",        "where",        "at",
+                 "from",       "to",          "first",    "last",  "lead", "inlier_from", "inlier_below", "percent",
                  "is",         "largest",     "smallest", "after", "ties", "note"});
     ClaimPart part;
     part.experiments = table_.texts("experiments");
     if (const auto experiment = table_.text("experiment")) part.experiments.push_back(*experiment);
     if (part.experiments.empty()) table_.fail("experiment", "missing");
-    part.with = table_.text("with").value_or("");
+    part.with = table_.texts("with");
     part.of = word_of(table_, "of", quantities(), Quantity());
     part.take = word_of(table_, "take", kTakes, Take::EachLevel);
+    part.over_pairs = word_of(table_, "over", kOver, false);
     part.where = word_of(table_, "where", kQuantifiers, Quantifier::Every);
     part.from = table_.number("from").value_or(part.from);
     part.to = table_.number("to").value_or(part.to);
     if (const auto at = table_.number("at")) part.from = part.to = *at;
-    part.last_levels = whole_number(table_, "last_levels", 0, 0);
     part.first = interval("first");
     part.last = interval("last");
     part.lead = table_.flag("lead").value_or(false);
@@ -156,8 +152,12 @@ class PartReader {
   void check(const ClaimPart& part) const {
     if (part.is.empty() && part.largest.empty() && part.smallest.empty())
       table_.fail("is", "missing: a rule needs is, largest or smallest");
-    const bool needs_second = part.take == Take::Correlation || part.take == Take::Difference;
-    if (needs_second != !part.with.empty()) table_.fail("with", "goes with correlation and difference, and only there");
+    const bool is_change = part.take == Take::Rise || part.take == Take::RelativeDrop;
+    if (part.with.empty() ? part.take == Take::Correlation : part.take != Take::Correlation && !is_change)
+      table_.fail("with", "goes with correlation, which needs it, rise and relative drop");
+    const bool only_pairs = part.take == Take::Percentile || part.take == Take::Count;
+    if (part.over_pairs ? !only_pairs && part.take != Take::Mean && part.take != Take::Spearman : only_pairs)
+      table_.fail("over", "'pairs' goes with mean, spearman, percentile and count; the last two need it");
     if (has_one_number(part) && asks_for_methods(part))
       table_.fail("is", "the rule has one number and none of each method, expected 'it' in its place");
     if (part.after > static_cast<int>(book_.methods.size())) table_.fail("after", "there are fewer methods");

@@ -22,7 +22,7 @@ struct Quantity {
   bool is_of_pairs() const { return kind != Kind::Measure || measure->has(kOfPair); }  ///< whatever the method
 };
 
-/// How the levels become one number for each method (or one alone), but for EachLevel; see claims.toml.
+/// How the levels (or the pairs) become one number for each method (or one alone), but for EachLevel; see claims.toml.
 enum class Take {
   EachLevel,
   Mean,
@@ -35,15 +35,10 @@ enum class Take {
   Spearman,
   Slope,
   Correlation,
-  Difference,
-  RelativeLoss,
   Wins,
   MeanRank,
-  PairMean,
-  PairMedian,
-  PairPercentile,
-  PairSpearman,
-  PairCount,
+  Percentile,
+  Count
 };
 
 /// At how many of the levels a rule has to hold.
@@ -66,21 +61,22 @@ struct Comparison {
 /// A rule, and the levels that it looks at.
 struct ClaimPart {
   std::vector<std::string> experiments;
-  std::string with;  ///< a second experiment
+  std::vector<std::string> with;  ///< others beside them
   Quantity of;
   Take take = Take::EachLevel;
+  bool over_pairs = false;  ///< over single pairs instead of the means of levels
   Quantifier where = Quantifier::Every;
   double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
-  int last_levels = 0;                                   ///< only so many from the end; 0: all
-  std::optional<std::pair<double, double>> first, last;  ///< of Rise and RelativeDrop; else the first and last level
-  bool lead = false;                                     ///< of each method above the best other, instead of the value
-  double inlier_from = 0, inlier_below = 2;              ///< of PairMean: only pairs with such an inlier ratio
-  double percent = 50;                                   ///< of PairPercentile
-  std::vector<Comparison> is;                            ///< all of them
-  std::vector<int> largest, smallest;                    ///< the methods with the largest or smallest numbers
-  int after = 0;                                         ///< of largest: so many others come before
-  bool ties = false;                                     ///< a tie within tau counts for either
-  bool is_note = false;                                  ///< told, but no part of the verdict
+  std::optional<std::pair<double, double>> first,
+      last;                                  ///< of Rise and RelativeDrop between levels; else the first and last
+  bool lead = false;                         ///< of each method above the best other, instead of the value
+  double inlier_from = 0, inlier_below = 2;  ///< over pairs: only those with such an inlier ratio
+  double percent = 50;                       ///< of Percentile
+  std::vector<Comparison> is;                ///< all of them
+  std::vector<int> largest, smallest;        ///< the methods with the largest or smallest numbers
+  int after = 0;                             ///< of largest: so many others come before
+  bool ties = false;                         ///< a tie within tau counts for either
+  bool is_note = false;                      ///< told, but no part of the verdict
 };
 
 /// A statement of the paper and the rule that decides it.

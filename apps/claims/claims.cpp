@@ -132,36 +132,28 @@ Verdict verdict_of(const std::vector<Rule>& rules, const Draws& draws) {
   return all;
 }
 
-std::string unit_of(const ClaimPart& part) {
+MarginUnit unit_of(const ClaimPart& part) {
   switch (part.take) {
     case Take::Spearman:
     case Take::Correlation:
-    case Take::PairSpearman:
-      return "correlation";
+      return {"correlation"};
     case Take::Slope:
-      return "slope";
+      return {"slope"};
     case Take::Wins:
-      return "cells";
+      return {"cells", 0};
     case Take::MeanRank:
-      return "ranks";
-    case Take::PairCount:
-      return "pairs";
+      return {"ranks"};
+    case Take::Count:
+      return {"pairs", 0};
     case Take::RelativeDrop:
-    case Take::RelativeLoss:
-      return "share lost";
+      return {"share lost"};
     default:
       break;
   }
-  switch (part.of.kind) {
-    case Quantity::Kind::Value:
-      return "of the axis";
-    case Quantity::Kind::Agreement:
-      return "Jaccard";
-    case Quantity::Kind::KeypointDensity:
-      return "keypoints";
-    default:
-      return (part.of.is_time() ? "ln " : "") + part.of.measure->title;
-  }
+  if (part.of.kind == Quantity::Kind::Value) return {"of the axis"};
+  if (part.of.kind == Quantity::Kind::Agreement) return {"Jaccard"};
+  if (part.of.kind == Quantity::Kind::KeypointDensity) return {"keypoints", 0};
+  return {(part.of.is_time() ? "ln " : "") + part.of.measure->title};
 }
 
 std::string levels_text(const Rule& rule, const std::vector<Outcome>& outcomes) {
@@ -182,8 +174,8 @@ PartVerdict judge_part(const Rule& rule, const Draws& draws) {
   if (!verdict.reason.empty()) return verdict;
   const Outcome outcome = rule.outcome(draws);
   if (std::isnan(outcome.margin)) {
-    verdict.reason = rule.part->take >= Take::PairMean ? "too few pairs to go by, or their numbers are not in the run"
-                                                       : "a number is missing: of a method, or at a level";
+    verdict.reason = rule.part->over_pairs ? "too few pairs to go by, or their numbers are not in the run"
+                                           : "a number is missing: of a method, or at a level";
     return verdict;
   }
   verdict.verdict = outcome.holds ? Verdict::Holds : Verdict::Fails;
@@ -208,7 +200,7 @@ ClaimVerdict judge(const ClaimBook& book, const Claim& claim, const Study& study
     }
     verdict.parts.push_back(part);
     std::vector<std::string> names = claim.parts[i].experiments;
-    if (!claim.parts[i].with.empty()) names.push_back(claim.parts[i].with);
+    names.insert(names.end(), claim.parts[i].with.begin(), claim.parts[i].with.end());
     for (const std::string& name : names) {
       if (std::find(verdict.experiments.begin(), verdict.experiments.end(), name) != verdict.experiments.end())
         continue;

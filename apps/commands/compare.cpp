@@ -143,9 +143,7 @@ void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("compare", "Which differences between the groupers of a run are more than chance");
   auto settings = std::make_shared<Settings>();
   command->add_option("run", settings->run, "Folder of corral evaluate")->type_name("RUN")->required();
-  command
-      ->add_option("--metric", settings->metric,
-                   "f1, precision, recall or success (refined mean error of at most 5 pr)")
+  command->add_option("--metric", settings->metric, "What to compare by (success: refined mean error of at most 5 pr)")
       ->check(CLI::IsMember(metric_names()))
       ->capture_default_str();
   command->add_option("--experiment", settings->experiment, "Only this one")->type_name("NAME");

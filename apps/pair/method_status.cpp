@@ -5,24 +5,17 @@ namespace corral {
 namespace {
 
 /// In the order of MethodState; those that end in a colon have a cause.
-const char* const kWords[] = {"",         "refined", "not converged", "too few rows", "degenerate geometry",
-                              "diverged", "timed",   "too large: ",   "failed: "};
+const char* const kWords[] = {"refined",  "too few rows",  "degenerate geometry",
+                              "diverged", "not converged", "timed",
+                              "",         "too large: ",   "failed: "};
 
 bool has_cause(MethodState state) { return state >= MethodState::TooLarge; }
 
 }  // namespace
 
 MethodStatus status_of(const RefinedPose& pose) {
-  switch (pose.status) {
-    case RefineStatus::TooFewRows:
-      return {MethodState::TooFewRows};
-    case RefineStatus::DegenerateGeometry:
-      return {MethodState::DegenerateGeometry};
-    case RefineStatus::Diverged:
-      return {MethodState::Diverged};
-    default:
-      return {pose.target_from_source && !pose.converged ? MethodState::NotConverged : MethodState::Refined};
-  }
+  if (pose.target_from_source && !pose.converged) return {MethodState::NotConverged};
+  return {static_cast<MethodState>(pose.status)};
 }
 
 std::string to_text(const MethodStatus& status) { return kWords[static_cast<int>(status.state)] + status.cause; }

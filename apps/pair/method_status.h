@@ -8,17 +8,19 @@
 
 namespace corral {
 
-/// How a method ended on a pair.
+/// How a method ended on a pair: as the refinement of its selection (RefineStatus, in its order), or NotConverged (a pose
+/// that was still moving), Timed (a call of which only the time was taken), TooLarge (not asked, since it would need more
+/// memory than it may) or Failed (no answer, or the pair could not be matched).
 enum class MethodState {
-  Unknown,
   Refined,
-  NotConverged,  ///< a pose that was still moving
-  TooFewRows,    ///< no pose, as RefineStatus has it; so the next two
+  TooFewRows,
   DegenerateGeometry,
   Diverged,
-  Timed,     ///< a call of which only the time was taken
-  TooLarge,  ///< not asked, since it would need more memory than it may
-  Failed,    ///< no answer, or the pair could not be matched
+  NotConverged,
+  Timed,
+  Unknown,
+  TooLarge,
+  Failed
 };
 
 struct MethodStatus {

@@ -64,6 +64,7 @@ std::string pairs_note(const ExperimentInfo& info) {
 Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Measure& measure) {
   Panel panel = empty_panel(info, file_part(measure));
   panel.y_axis = measure.axis_title();
+  panel.smaller_is_better = measure.better == Better::Smaller;
   panel.note = pairs_note(info);
   PanelCount empty{"empty", {}}, pairs{"pairs", {}}, excluded{"excluded", {}};
   const bool with_bounds = measure.has(kWithBounds);
@@ -133,6 +134,7 @@ Panel time_panel(const RunFolder& run, const ExperimentInfo& info) {
   panel.axes = PanelAxes::Logarithmic;
   const Measure& time = measure("time_ms");
   panel.y_axis = time.title + " (" + time.unit + ")";
+  panel.smaller_is_better = time.better == Better::Smaller;
   panel.note = "Median wall time of the grouping alone, one thread.";
   std::map<std::pair<std::string, std::string>, std::vector<std::optional<double>>> times;
   for (const StudyRecord& record : run.records)

@@ -115,6 +115,16 @@ MethodColumns columns_of(const LevelTable& level, const MethodRecords& records, 
   return columns;
 }
 
+/// Of so many numbers, but for those that are none.
+template <class Number>
+double mean_over(std::size_t count, const Number& number) {
+  double sum = 0;
+  int seen = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const double value = number(i); !std::isnan(value)) sum += value, ++seen;
+  return seen > 0 ? sum / seen : kAbsent;
+}
+
 double jaccard(const Indices& a, const Indices& b) {
   Indices both;
   std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
@@ -167,26 +177,11 @@ std::vector<ExperimentTable> experiment_tables(const RunFolder& run) {
 }
 
 double mean_of(const RowNumbers& column) {
-  double sum = 0;
-  int seen = 0;
-  for (const double value : column) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++seen;
-  }
-  return seen > 0 ? sum / seen : kAbsent;
+  return mean_over(column.size(), [&](std::size_t i) { return column[i]; });
 }
 
 double mean_of(const RowNumbers& column, const std::vector<int>& rows) {
-  double sum = 0;
-  int seen = 0;
-  for (const int row : rows) {
-    const double value = column[static_cast<std::size_t>(row)];
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++seen;
-  }
-  return seen > 0 ? sum / seen : kAbsent;
+  return mean_over(rows.size(), [&](std::size_t i) { return column[static_cast<std::size_t>(rows[i])]; });
 }
 
 int present_in(const RowNumbers& column) {

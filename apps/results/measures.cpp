@@ -66,13 +66,7 @@ const std::vector<Measure> kOfCalls = {
      kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, dense"},
 };
 
-/// Of a pose, behind its stage; the last is how many of them stand in the summary and on the page for the refined pose.
-struct PoseMeasure {
-  const char *name, *title, *unit;
-  Number PoseScores::*score;
-  bool is_summed, is_on_page;
-};
-const PoseMeasure kOfPoses[] = {
+const std::vector<PoseMeasure> kOfPoses = {
     {"rotation_error_deg",   "rotation error",    "deg",       &PoseScores::rotation_error_deg,   true,  false},
     {"translation_error_pr", "translation error", "pr",        &PoseScores::translation_error_pr, true,  false},
     {"mean_error_pr",        "mean error",        "pr",        &PoseScores::mean_error_pr,        true,  true},
@@ -83,19 +77,12 @@ const PoseMeasure kOfPoses[] = {
 
 /// Errors of a pose that is not there are the worst.
 void add_pose(std::vector<Measure>& table, const std::string& stage, PoseScores R::*pose) {
-  const bool is_refined = stage == "refined";
-  for (const PoseMeasure& of : kOfPoses)
-    table.push_back({stage + "_" + of.name,
-                     std::string(of.title) + ", " + stage,
-                     of.unit,
-                     2,
-                     kAny,
-                     Smaller,
-                     {nullptr, nullptr, pose, of.score},
-                     nullptr,
-                     Infinite,
-                     is_refined && of.is_summed ? Median : None,
-                     of.is_on_page || (is_refined && of.is_summed) ? kOnPage : 0});
+  for (const PoseMeasure& of : kOfPoses) {
+    const bool is_summed = of.is_summed && stage == "refined";
+    const Stored stored = {nullptr, nullptr, pose, of.score};
+    table.push_back({stage + "_" + of.name, std::string(of.title) + ", " + stage, of.unit, 2, kAny, Smaller, stored,
+                     nullptr, Infinite, is_summed ? Median : None, is_summed || of.is_on_page ? kOnPage : 0});
+  }
 }
 
 std::vector<Measure> make_table() {
@@ -127,6 +114,8 @@ const std::vector<Measure>& measures() {
   static const std::vector<Measure> table = make_table();
   return table;
 }
+
+const std::vector<PoseMeasure>& pose_measures() { return kOfPoses; }
 
 std::vector<const Measure*> measures_with(unsigned flag) {
   std::vector<const Measure*> found;

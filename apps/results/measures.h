@@ -68,6 +68,15 @@ std::vector<const Measure*> measures_with(unsigned flag);
 /// By name. Throws InvalidInput for one that is not there.
 const Measure& measure(const std::string& name);
 
+/// A measure of a pose: one behind the name of each stage stands in the table.
+struct PoseMeasure {
+  const char *name, *title, *unit;
+  std::optional<double> PoseScores::*score;
+  bool is_summed;   ///< of the refined pose: in the summary and on the page
+  bool is_on_page;  ///< of the others too
+};
+const std::vector<PoseMeasure>& pose_measures();
+
 /// What a pair is to the means of an experiment: of every record of the pair the same.
 enum class PairRole {
   Judged,    ///< counts

@@ -25,12 +25,13 @@ std::vector<TimeRow> time_rows(const ExperimentInfo& info, const std::vector<Stu
 }
 
 std::string time_text(const std::vector<TimeRow>& rows) {
-  std::string text = csv_line({"experiment", "dataset", "level", "method", "runs", "median_ms", "mean_ms",
-                               "lower_quartile_ms", "upper_quartile_ms"});
-  for (const TimeRow& row : rows)
-    text +=
-        csv_line({row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs), to_text(row.median_ms),
-                  to_text(row.mean_ms), to_text(row.lower_quartile_ms), to_text(row.upper_quartile_ms)});
+  std::string text = "experiment,dataset,level,method,runs,median_ms,mean_ms,lower_quartile_ms,upper_quartile_ms\n";
+  for (const TimeRow& row : rows) {
+    std::vector<std::string> cells = {row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs)};
+    for (const double time : {row.median_ms, row.mean_ms, row.lower_quartile_ms, row.upper_quartile_ms})
+      cells.push_back(to_text(time));
+    text += csv_line(cells);
+  }
   return text;
 }
 

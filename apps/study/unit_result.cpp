@@ -2,6 +2,7 @@
 // The answer of a unit as JSON: numbers read back as the same doubles.
 #include <nlohmann/json.hpp>
 
+#include "apps/results/measures.h"
 #include "apps/study/evaluate_unit.h"
 #include "kernel/error.h"
 
@@ -33,13 +34,16 @@ std::vector<int> counts_of(const Json& json) {
 }
 
 Json to_json(const PoseScores& scores) {
-  return {json_of(scores.rotation_error_deg), json_of(scores.translation_error_pr), json_of(scores.mean_error_pr),
-          json_of(scores.rmse_pr), json_of(scores.add_share)};
+  Json json = Json::array();
+  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_of(scores.*measure.score));
+  return json;
 }
 
 PoseScores pose_scores_of(const Json& json) {
-  return {number_of(json.at(0)), number_of(json.at(1)), number_of(json.at(2)), number_of(json.at(3)),
-          number_of(json.at(4))};
+  PoseScores scores;
+  std::size_t place = 0;
+  for (const PoseMeasure& measure : pose_measures()) scores.*measure.score = number_of(json.at(place++));
+  return scores;
 }
 
 Json to_json(const TaskResult& task) {
