@@ -15,7 +15,7 @@ struct Settings {
 int judge(const Settings& settings) {
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
   const std::vector<RunFolder> runs = read_runs(settings.runs);
-  const std::vector<ClaimVerdict> verdicts = judge_claims(book, results_of(runs));
+  const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs));
   if (!settings.json) {
     put("", claims_text(verdicts, book.slips));
     return kOk;

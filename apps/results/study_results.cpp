@@ -35,13 +35,15 @@ std::string time_text(const std::vector<TimeRow>& rows) {
   return text;
 }
 
-std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs) {
+std::vector<StudyResults> tables_of(const std::vector<RunFolder>& runs) {
   std::vector<StudyResults> results;
-  for (const RunFolder& run : runs) {
-    std::vector<ExperimentTable> tables = experiment_tables(run);
-    std::vector<SummaryRow> summary = summarize(tables);
-    results.push_back({&run, std::move(tables), std::move(summary)});
-  }
+  for (const RunFolder& run : runs) results.push_back({&run, experiment_tables(run), {}});
+  return results;
+}
+
+std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs) {
+  std::vector<StudyResults> results = tables_of(runs);
+  for (StudyResults& study : results) study.summary = summarize(study.tables);
   return results;
 }
 

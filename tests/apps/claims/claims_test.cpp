@@ -25,7 +25,7 @@ using Verdicts = std::map<std::string, ClaimVerdict>;
 
 Verdicts judge(const std::vector<RunFolder>& runs) {
   Verdicts verdicts;
-  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), results_of(runs))) verdicts[verdict.id] = verdict;
+  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) verdicts[verdict.id] = verdict;
   return verdicts;
 }
 
@@ -59,7 +59,7 @@ TEST(Claims, AllAreDecidedOnACompleteRun) {
   testing::write_run(run);
   int decided[2] = {};
   const std::vector<RunFolder> runs = {read_run(run.folder)};
-  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), results_of(runs))) {
+  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) {
     EXPECT_NE(verdict.verdict, Verdict::Undecidable) << verdict.id << " " << verdict.parts.front().reason;
     EXPECT_TRUE(verdict.margin) << verdict.id;
     EXPECT_FALSE(verdict.experiments.empty()) << verdict.id;
