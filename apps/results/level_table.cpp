@@ -55,6 +55,7 @@ Layout lay_out(const RunFolder& run) {
     for (const StudyLevel& level : info.levels) {
       levels[{info.name, level.label}] = {layout.tables.size() - 1, table.levels.size()};
       table.levels.emplace_back().level = level;
+      for (const Measure* measure : measures_with(kOfPair)) table.levels.back().of_pairs[measure->name];
     }
   }
   RowKeys keys;
@@ -74,7 +75,7 @@ Layout lay_out(const RunFolder& run) {
       level.selections.emplace_back();
       level.roles.push_back(role_of(record, layout.tables[experiment].info.least_true_matches));
       level.value.push_back(kAbsent);
-      for (const Measure* measure : measures_with(kOfPair)) level.of_pairs[measure->name].push_back(kAbsent);
+      for (auto& [name, column] : level.of_pairs) column.push_back(kAbsent);
     }
     layout.places.push_back({&record, experiment, level_index, row->second});
   }

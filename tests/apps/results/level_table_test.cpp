@@ -171,6 +171,12 @@ TEST(LevelTable, PosesAreJudgedStageByStage) {
   EXPECT_THAT(columns().numbers.at("dense_success_5pr"), ElementsAre(1, 0));
 }
 
+TEST(LevelTable, ALevelWithoutARowHasEmptyColumnsOfPairs) {
+  const LevelTable level = experiment_tables(run_of({})).at(0).levels.at(0);
+  for (const Measure* measure : measures_with(kOfPair)) EXPECT_TRUE(level.column(*measure, "")->empty());
+  EXPECT_FALSE(level.column(measure("precision"), "gc"));
+}
+
 TEST(LevelTable, RefusesALevelThatTheManifestLacks) {
   StudyRecord stray = record_of("a", "gc", 10, 1, 1);
   stray.level = "0.7";
