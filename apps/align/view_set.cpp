@@ -12,7 +12,6 @@
 namespace corral {
 namespace {
 
-constexpr double kOverlapPr = 2;
 constexpr double kCellPr = 2;              // of the depth images
 constexpr double kInFrontPr = 5;           // what noise and a pose that is nearly right do not reach
 constexpr double kHopelessInFront = 0.06;  // the finest level, most of the work, is not for poses that are worse
@@ -55,11 +54,11 @@ double ViewSet::share_in_front(int a, int b, const RigidTransform& b_from_a) con
 
 ViewAgreement ViewSet::agreement(int a, int b, const RigidTransform& b_from_a) const {
   const Points &source = mesh(a).vertices, &target = mesh(b).vertices;
-  ViewAgreement agreement{overlap_share(source, target, b_from_a, kOverlapPr * resolution_), std::nullopt,
+  ViewAgreement agreement{overlap_share(source, target, b_from_a, kOverlapSharePr * resolution_), std::nullopt,
                           share_in_front(a, b, b_from_a)};
   const Points moved = b_from_a.apply(source);
   NearestTracker tracker(at(b).tree);
-  const Indices& nearest = tracker.nearest(moved, kOverlapPr * resolution_);
+  const Indices& nearest = tracker.nearest(moved, kOverlapSharePr * resolution_);
   std::vector<double> distances;
   for (std::size_t i = 0; i < nearest.size(); ++i)
     if (nearest[i] >= 0)

@@ -10,17 +10,11 @@
 namespace corral {
 namespace {
 
-const RowNumbers& column_of(const MethodColumns& columns, Quantity quantity) {
-  switch (quantity) {
-    case Quantity::Precision:
-      return columns.precision;
-    case Quantity::Recall:
-      return columns.recall;
-    case Quantity::Time:
-      return columns.time_ms;
-    default:
-      return columns.f1;
-  }
+const RowNumbers* column_of_pairs(const LevelSource& source, const Quantity& quantity) {
+  if (quantity.kind == Quantity::Kind::Value) return &source.table->value;
+  if (quantity.kind == Quantity::Kind::Agreement) return &source.agreement;
+  if (quantity.kind == Quantity::Kind::KeypointDensity) return &source.keypoints;
+  return source.table->column(*quantity.measure, "");
 }
 
 }  // namespace
@@ -28,7 +22,7 @@ const RowNumbers& column_of(const MethodColumns& columns, Quantity quantity) {
 ClaimMeasure::ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const ClaimData& data, bool half_sum)
     : book_(book), part_(part), half_sum_(half_sum) {
   for (const std::string& experiment : part.experiments) experiments_.push_back(bind(data, experiment));
-  if (!part.with.empty()) with_ = bind(data, part.with);
+  for (const std::string& experiment : part.with) with_.push_back(bind(data, experiment));
   if (reason_.empty()) require_levels();
   if (reason_.empty() && part.take == Take::LeastStep) bind_partners();
 }
@@ -47,51 +41,44 @@ ClaimMeasure::Levels ClaimMeasure::bind(const ClaimData& data, const std::string
     bind_columns(bound);
     if (is_usable(bound)) levels.push_back(bound);
   }
-  const auto last = static_cast<std::size_t>(part_.last_levels);
-  if (last > 0 && levels.size() > last) levels.erase(levels.begin(), levels.end() - part_.last_levels);
   if (levels.empty() && reason_.empty()) {
     const bool is_limited = std::isfinite(part_.from) || std::isfinite(part_.to);
     reason_ = "no level of " + experiment +
               (is_limited ? " from " + to_text(part_.from) + " to " + to_text(part_.to) : std::string()) +
-              (part_.of == Quantity::Time || takes_pairs() ? std::string(" was measured")
-                                                           : " has " + std::to_string(book_.least_pairs) + " pairs");
+              (part_.of.is_time() || part_.over_pairs ? std::string(" was measured")
+                                                      : " has " + std::to_string(book_.least_pairs) + " pairs");
   }
   return levels;
 }
 
 void ClaimMeasure::bind_columns(Level& level) const {
   const LevelTable& table = *level.source->table;
-  const std::map<Quantity, const RowNumbers*> single = {{Quantity::InlierRatio, &table.inlier_ratio},
-                                                        {Quantity::FrameShare, &table.frame_share},
-                                                        {Quantity::Value, &table.value},
-                                                        {Quantity::Agreement, &level.source->agreement},
-                                                        {Quantity::KeypointDensity, &level.source->keypoints}};
-  if (const auto found = single.find(part_.of); found != single.end()) {
-    level.columns = {found->second->size() == table.pairs.size() ? found->second : nullptr};
+  if (part_.of.is_of_pairs()) {
+    const RowNumbers* column = column_of_pairs(*level.source, part_.of);
+    level.columns = {column->size() == table.pairs.size() ? column : nullptr};
     return;
   }
-  const bool halves = half_sum_ && part_.of == Quantity::F1;
+  const bool halves = half_sum_ && part_.of.is_measure("f1");
   for (const std::string& method : book_.methods) {
-    const auto found = table.methods.find(method);
-    const MethodColumns* columns = found == table.methods.end() ? nullptr : &found->second;
-    level.columns.push_back(columns ? &column_of(*columns, halves ? Quantity::Precision : part_.of) : nullptr);
-    if (halves) level.second.push_back(columns ? &columns->recall : nullptr);
+    level.columns.push_back(table.column(halves ? measure("precision") : *part_.of.measure, method));
+    if (halves) level.second.push_back(table.column(measure("recall"), method));
   }
 }
 
 bool ClaimMeasure::is_usable(const Level& level) const {
   const LevelTable& table = *level.source->table;
-  if (part_.of == Quantity::Time)  // of a table of some size; how many pairs made it does not matter
+  if (part_.of.is_time())  // of a table of some size; how many pairs made it does not matter
     return std::any_of(level.columns.begin(), level.columns.end(),
                        [](const RowNumbers* column) { return column && present_in(*column) > 0; });
-  if (takes_pairs()) return !table.pairs.empty();  // they ask for enough pairs in all
+  if (part_.over_pairs) return !table.pairs.empty();  // they ask for enough pairs in all
   if (level.columns.size() == 1) return level.columns[0] && present_in(*level.columns[0]) >= book_.least_pairs;
-  return table.counted() >= book_.least_pairs;
+  return table.count(PairRole::Judged) >= book_.least_pairs;
 }
 
 void ClaimMeasure::require_levels() {
   const Levels& levels = experiments_.front();
   const std::string& name = part_.experiments.front();
+  if (part_.over_pairs) return;  // they ask for enough pairs in all
   const bool is_trend = part_.take == Take::Spearman || part_.take == Take::Slope;
   const bool is_series = is_trend || part_.take == Take::Range || part_.take == Take::LargestRise ||
                          part_.take == Take::LargestFall || part_.take == Take::LeastStep;
@@ -99,7 +86,7 @@ void ClaimMeasure::require_levels() {
   if (levels.size() < needed)
     reason_ =
         name + " has " + std::to_string(levels.size()) + " levels to go by, " + std::to_string(needed) + " needed";
-  if (part_.take != Take::Rise && part_.take != Take::RelativeDrop) return;
+  if (!with_.empty() || (part_.take != Take::Rise && part_.take != Take::RelativeDrop)) return;
   for (const Range& range : {part_.first, part_.last})
     if (range && within(levels, range, false).empty())
       reason_ = "no level of " + name + " from " + to_text(range->first) + " to " + to_text(range->second) + " has " +

@@ -21,15 +21,18 @@ namespace {
 template <class Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
-const Words<Quantity> kQuantities = {{"precision", Quantity::Precision},
-                                     {"recall", Quantity::Recall},
-                                     {"f1", Quantity::F1},
-                                     {"time", Quantity::Time},
-                                     {"inlier ratio", Quantity::InlierRatio},
-                                     {"frame share", Quantity::FrameShare},
-                                     {"value", Quantity::Value},
-                                     {"agreement", Quantity::Agreement},
-                                     {"keypoints", Quantity::KeypointDensity}};
+/// Every measure that has a mean, and what else there is.
+Words<Quantity> quantities() {
+  Words<Quantity> words;
+  for (const Measure& measure : measures())
+    if (measure.absent != Absent::Infinite && measure.average != Average::Pooled)
+      words.push_back({measure.word(), {Quantity::Kind::Measure, &measure}});
+  words.push_back({"value", {Quantity::Kind::Value, nullptr}});
+  words.push_back({"agreement", {Quantity::Kind::Agreement, nullptr}});
+  words.push_back({"keypoints", {Quantity::Kind::KeypointDensity, nullptr}});
+  return words;
+}
+
 const Words<Take> kTakes = {{"each level", Take::EachLevel},
                             {"mean", Take::Mean},
                             {"range", Take::Range},
@@ -41,15 +44,11 @@ const Words<Take> kTakes = {{"each level", Take::EachLevel},
                             {"spearman", Take::Spearman},
                             {"slope", Take::Slope},
                             {"correlation", Take::Correlation},
-                            {"difference", Take::Difference},
-                            {"relative loss", Take::RelativeLoss},
                             {"wins", Take::Wins},
                             {"mean rank", Take::MeanRank},
-                            {"pair mean", Take::PairMean},
-                            {"pair median", Take::PairMedian},
-                            {"pair percentile", Take::PairPercentile},
-                            {"pair spearman", Take::PairSpearman},
-                            {"pair count", Take::PairCount}};
+                            {"percentile", Take::Percentile},
+                            {"count", Take::Count}};
+const Words<bool> kOver = {{"levels", false}, {"pairs", true}};
 const Words<Quantifier> kQuantifiers = {
     {"every", Quantifier::Every}, {"most", Quantifier::Most}, {"half", Quantifier::Half}, {"one", Quantifier::One}};
 const Words<Operand::Kind> kOperands = {{"all", Operand::Kind::All},
@@ -99,9 +98,7 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
 }
 
 /// One number for all methods together: of none of them can anything be said.
-bool has_one_number(const ClaimPart& part) {
-  return part.of >= Quantity::InlierRatio || part.take == Take::Correlation;
-}
+bool has_one_number(const ClaimPart& part) { return part.of.is_of_pairs() || part.take == Take::Correlation; }
 
 bool asks_for_methods(const ClaimPart& part) {
   const auto is_of_methods = [](const Operand& operand) {
@@ -120,21 +117,21 @@ class PartReader {
   PartReader(const ClaimBook& book, TomlTable table) : book_(book), table_(std::move(table)) {}
 
   ClaimPart read() const {
-    table_.only({"experiment", "experiments", "with",     "of",    "take", "where",       "at",           "from",
-                 "to",         "last_levels", "first",    "last",  "lead", "inlier_from", "inlier_below", "percent",
+    table_.only({"experiment", "experiments", "with",     "of",    "take", "over",        "where",        "at",
+                 "from",       "to",          "first",    "last",  "lead", "inlier_from", "inlier_below", "percent",
                  "is",         "largest",     "smallest", "after", "ties", "note"});
     ClaimPart part;
     part.experiments = table_.texts("experiments");
     if (const auto experiment = table_.text("experiment")) part.experiments.push_back(*experiment);
     if (part.experiments.empty()) table_.fail("experiment", "missing");
-    part.with = table_.text("with").value_or("");
-    part.of = word_of(table_, "of", kQuantities, Quantity::F1);
+    part.with = table_.texts("with");
+    part.of = word_of(table_, "of", quantities(), Quantity());
     part.take = word_of(table_, "take", kTakes, Take::EachLevel);
+    part.over_pairs = word_of(table_, "over", kOver, false);
     part.where = word_of(table_, "where", kQuantifiers, Quantifier::Every);
     part.from = table_.number("from").value_or(part.from);
     part.to = table_.number("to").value_or(part.to);
     if (const auto at = table_.number("at")) part.from = part.to = *at;
-    part.last_levels = whole_number(table_, "last_levels", 0, 0);
     part.first = interval("first");
     part.last = interval("last");
     part.lead = table_.flag("lead").value_or(false);
@@ -155,8 +152,12 @@ class PartReader {
   void check(const ClaimPart& part) const {
     if (part.is.empty() && part.largest.empty() && part.smallest.empty())
       table_.fail("is", "missing: a rule needs is, largest or smallest");
-    const bool needs_second = part.take == Take::Correlation || part.take == Take::Difference;
-    if (needs_second != !part.with.empty()) table_.fail("with", "goes with correlation and difference, and only there");
+    const bool is_change = part.take == Take::Rise || part.take == Take::RelativeDrop;
+    if (part.with.empty() ? part.take == Take::Correlation : part.take != Take::Correlation && !is_change)
+      table_.fail("with", "goes with correlation, which needs it, rise and relative drop");
+    const bool only_pairs = part.take == Take::Percentile || part.take == Take::Count;
+    if (part.over_pairs ? !only_pairs && part.take != Take::Mean && part.take != Take::Spearman : only_pairs)
+      table_.fail("over", "'pairs' goes with mean, spearman, percentile and count; the last two need it");
     if (has_one_number(part) && asks_for_methods(part))
       table_.fail("is", "the rule has one number and none of each method, expected 'it' in its place");
     if (part.after > static_cast<int>(book_.methods.size())) table_.fail("after", "there are fewer methods");

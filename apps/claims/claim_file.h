@@ -7,12 +7,22 @@
 #include <utility>
 #include <vector>
 
+#include "apps/results/measures.h"
+
 namespace corral {
 
-/// The number that a rule looks at: of a method at a level, or, from inlier_ratio on, of the pairs whatever the method.
-enum class Quantity { Precision, Recall, F1, Time, InlierRatio, FrameShare, Value, Agreement, KeypointDensity };
+/// The number that a rule looks at: a measure, or what else is known of the pairs.
+struct Quantity {
+  enum class Kind { Measure, Value, Agreement, KeypointDensity };
+  Kind kind = Kind::Measure;
+  const Measure* measure = &corral::measure("f1");  ///< of Kind::Measure
 
-/// How the levels become one number for each method (or one alone), but for EachLevel; see claims.toml.
+  bool is_measure(const std::string& name) const { return kind == Kind::Measure && measure->name == name; }
+  bool is_time() const { return kind == Kind::Measure && measure->unit == "ms"; }
+  bool is_of_pairs() const { return kind != Kind::Measure || measure->has(kOfPair); }  ///< whatever the method
+};
+
+/// How the levels (or the pairs) become one number for each method (or one alone), but for EachLevel; see claims.toml.
 enum class Take {
   EachLevel,
   Mean,
@@ -25,15 +35,10 @@ enum class Take {
   Spearman,
   Slope,
   Correlation,
-  Difference,
-  RelativeLoss,
   Wins,
   MeanRank,
-  PairMean,
-  PairMedian,
-  PairPercentile,
-  PairSpearman,
-  PairCount,
+  Percentile,
+  Count
 };
 
 /// At how many of the levels a rule has to hold.
@@ -56,21 +61,22 @@ struct Comparison {
 /// A rule, and the levels that it looks at.
 struct ClaimPart {
   std::vector<std::string> experiments;
-  std::string with;  ///< a second experiment
-  Quantity of = Quantity::F1;
+  std::vector<std::string> with;  ///< others beside them
+  Quantity of;
   Take take = Take::EachLevel;
+  bool over_pairs = false;  ///< over single pairs instead of the means of levels
   Quantifier where = Quantifier::Every;
   double from = -std::numeric_limits<double>::infinity(), to = std::numeric_limits<double>::infinity();
-  int last_levels = 0;                                   ///< only so many from the end; 0: all
-  std::optional<std::pair<double, double>> first, last;  ///< of Rise and RelativeDrop; else the first and last level
-  bool lead = false;                                     ///< of each method above the best other, instead of the value
-  double inlier_from = 0, inlier_below = 2;              ///< of PairMean: only pairs with such an inlier ratio
-  double percent = 50;                                   ///< of PairPercentile
-  std::vector<Comparison> is;                            ///< all of them
-  std::vector<int> largest, smallest;                    ///< the methods with the largest or smallest numbers
-  int after = 0;                                         ///< of largest: so many others come before
-  bool ties = false;                                     ///< a tie within tau counts for either
-  bool is_note = false;                                  ///< told, but no part of the verdict
+  std::optional<std::pair<double, double>> first,
+      last;                                  ///< of Rise and RelativeDrop between levels; else the first and last
+  bool lead = false;                         ///< of each method above the best other, instead of the value
+  double inlier_from = 0, inlier_below = 2;  ///< over pairs: only those with such an inlier ratio
+  double percent = 50;                       ///< of Percentile
+  std::vector<Comparison> is;                ///< all of them
+  std::vector<int> largest, smallest;        ///< the methods with the largest or smallest numbers
+  int after = 0;                             ///< of largest: so many others come before
+  bool ties = false;                         ///< a tie within tau counts for either
+  bool is_note = false;                      ///< told, but no part of the verdict
 };
 
 /// A statement of the paper and the rule that decides it.

@@ -66,9 +66,10 @@ double of_one_series(Take take, const Numbers& x, const Numbers& y) {
 }  // namespace
 
 Scale ClaimMeasure::scale() const {
-  const bool is_time = part_.of == Quantity::Time;
-  const bool is_logarithm = is_time && part_.take != Take::Slope && part_.take < Take::Wins;
-  return {is_time ? std::log(1 + book_.time_tau) : book_.tau, is_logarithm, is_time};
+  const bool is_time = part_.of.is_time();
+  const bool is_logarithm = is_time && !part_.over_pairs && part_.take != Take::Slope && part_.take < Take::Wins;
+  return {is_time ? std::log(1 + book_.time_tau) : book_.tau, is_logarithm,
+          part_.of.kind == Quantity::Kind::Measure && part_.of.measure->better == Better::Smaller};
 }
 
 std::vector<std::string> ClaimMeasure::labels() const {
@@ -84,7 +85,7 @@ Numbers ClaimMeasure::of_level(const Level& level, const Draws& draws) const {
   for (std::size_t i = 0; i < level.columns.size(); ++i) {
     double number = level.columns[i] ? mean_of(*level.columns[i], rows) : kAbsent;
     if (!level.second.empty() && level.columns[i]) number = (number + mean_of(*level.second[i], rows)) / 2;
-    numbers.push_back(part_.of == Quantity::Time ? std::log(number) : number);
+    numbers.push_back(part_.of.is_time() ? std::log(number) : number);
   }
   return part_.lead ? leads_of(numbers) : numbers;
 }
@@ -117,14 +118,14 @@ Numbers ClaimMeasure::of_ends(const Draws& draws) const {
 
 Numbers ClaimMeasure::of_experiments(const Draws& draws) const {
   const Numbers first = mean(experiments_.front(), draws);
-  if (part_.take == Take::Difference) return difference(first, mean(with_, draws));
-  if (part_.take == Take::Correlation) return {spearman(first, mean(with_, draws))};
-  Numbers sum(first.size(), 0.0);  // relative loss: the mean over the other experiments beside the first
-  for (std::size_t i = 1; i < experiments_.size(); ++i) {
-    const Numbers other = mean(experiments_[i], draws);
-    for (std::size_t j = 0; j < sum.size(); ++j) sum[j] += other[j] / static_cast<double>(experiments_.size() - 1);
+  Numbers others(first.size(), 0.0);  // the mean over them
+  for (const Levels& levels : with_) {
+    const Numbers other = mean(levels, draws);
+    for (std::size_t i = 0; i < others.size(); ++i) others[i] += other[i] / static_cast<double>(with_.size());
   }
-  return relative_loss(first, sum);
+  if (part_.take == Take::Rise) return difference(others, first);
+  if (part_.take == Take::RelativeDrop) return relative_loss(first, others);
+  return {spearman(first, others)};
 }
 
 Numbers ClaimMeasure::of_series(const Draws& draws) const {
@@ -132,7 +133,7 @@ Numbers ClaimMeasure::of_series(const Draws& draws) const {
   std::vector<Numbers> series;  // of each method
   for (const Level& level : experiments_.front()) {
     const LevelTable& table = *level.source->table;
-    const double matches = mean_of(table.matches);
+    const double matches = mean_of(*table.column(measure("matches"), ""));
     x.push_back(part_.take == Take::Slope ? std::log(std::isnan(matches) ? table.level.middle() : matches)
                                           : table.level.middle());
     const Numbers numbers = of_level(level, draws);
@@ -186,19 +187,20 @@ Numbers ClaimMeasure::of_pairs(const Draws& draws) const {
     for (const Levels& levels : experiments_)
       for (const Level& level : levels) {
         const LevelTable& table = *level.source->table;
+        const RowNumbers& inlier_ratios = *table.column(measure("inlier_ratio"), "");
         rows += static_cast<double>(draws[level.source->slot].size());
-        if (!level.columns[i] || part_.take == Take::PairCount) continue;
+        if (!level.columns[i] || part_.take == Take::Count) continue;
         for (const int row : draws[level.source->slot]) {
           const auto place = static_cast<std::size_t>(row);
-          const double number = (*level.columns[i])[place], ratio = table.inlier_ratio[place];
+          const double number = (*level.columns[i])[place], ratio = inlier_ratios[place];
           const bool is_any = part_.inlier_from <= 0 && part_.inlier_below > 1;
           if (std::isnan(number) || !(is_any || (ratio >= part_.inlier_from && ratio < part_.inlier_below))) continue;
-          if (part_.take == Take::PairSpearman && std::isnan(table.value[place])) continue;
+          if (part_.take == Take::Spearman && std::isnan(table.value[place])) continue;
           numbers.push_back(number);
           values.push_back(table.value[place]);
         }
       }
-    if (part_.take == Take::PairCount)
+    if (part_.take == Take::Count)
       result.push_back(rows);
     else
       result.push_back(static_cast<int>(numbers.size()) < book_.least_pairs ? kAbsent : of_numbers(numbers, values));
@@ -208,11 +210,9 @@ Numbers ClaimMeasure::of_pairs(const Draws& draws) const {
 
 double ClaimMeasure::of_numbers(const Numbers& numbers, const Numbers& values) const {
   switch (part_.take) {
-    case Take::PairMean:
+    case Take::Mean:
       return mean_of(numbers);
-    case Take::PairMedian:
-      return median_of(numbers);
-    case Take::PairPercentile:
+    case Take::Percentile:
       return quantile_of(numbers, part_.percent / 100);
     default:
       return trend(values, numbers);
@@ -220,6 +220,8 @@ double ClaimMeasure::of_numbers(const Numbers& numbers, const Numbers& values) c
 }
 
 std::vector<Numbers> ClaimMeasure::numbers(const Draws& draws) const {
+  if (part_.over_pairs) return {of_pairs(draws)};
+  if (!with_.empty()) return {of_experiments(draws)};
   switch (part_.take) {
     case Take::EachLevel: {
       std::vector<Numbers> all;
@@ -231,20 +233,14 @@ std::vector<Numbers> ClaimMeasure::numbers(const Draws& draws) const {
     case Take::Rise:
     case Take::RelativeDrop:
       return {of_ends(draws)};
-    case Take::Correlation:
-    case Take::Difference:
-    case Take::RelativeLoss:
-      return {of_experiments(draws)};
     case Take::LeastStep:
       return {of_steps(draws)};
     case Take::Wins:
     case Take::MeanRank:
       return {of_cells(draws)};
     default:
-      break;
+      return {of_series(draws)};
   }
-  if (!takes_pairs()) return {of_series(draws)};
-  return {of_pairs(draws)};
 }
 
 }  // namespace corral

@@ -50,7 +50,6 @@ class ClaimMeasure {
   void bind_partners();
   void require_levels();
 
-  bool takes_pairs() const { return part_.take >= Take::PairMean; }
   Numbers of_level(const Level& level, const Draws& draws) const;
   Numbers mean(const Levels& levels, const Draws& draws) const;
   static Levels within(const Levels& levels, const Range& range, bool from_the_end);
@@ -67,7 +66,7 @@ class ClaimMeasure {
   bool half_sum_;
   std::string reason_;
   std::vector<Levels> experiments_;  // as in the part
-  Levels with_;
+  std::vector<Levels> with_;
 };
 
 }  // namespace corral

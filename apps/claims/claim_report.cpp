@@ -13,7 +13,7 @@ Json to_json(const PartVerdict& part) {
   return {{"id", part.id},
           {"verdict", part.is_note ? Json("note") : Json(verdict_name(part.verdict))},
           {"margin", decided && std::isfinite(part.margin) ? Json(part.margin) : Json(nullptr)},
-          {"unit", part.unit},
+          {"unit", part.unit.name},
           {"levels", part.levels},
           {"reason", part.reason}};
 }
@@ -27,7 +27,7 @@ Json to_json(const ClaimVerdict& verdict) {
           {"sensitive", verdict.is_sensitive},
           {"changed_in_resamples", verdict.changed},
           {"margin", verdict.margin && std::isfinite(*verdict.margin) ? Json(*verdict.margin) : Json(nullptr)},
-          {"unit", verdict.unit},
+          {"unit", verdict.unit.name},
           {"statement", verdict.text},
           {"note", verdict.note},
           {"experiments", verdict.experiments},
@@ -40,10 +40,9 @@ std::string words(const ClaimVerdict& verdict) {
          (verdict.is_sensitive ? ", sensitive" : "");
 }
 
-std::string margin_text(double margin, const std::string& unit) {
+std::string margin_text(double margin, const MarginUnit& unit) {
   if (!std::isfinite(margin)) return "any";
-  return (margin < 0 ? "" : "+") + fixed(margin, unit == "pairs" || unit == "cells" || unit == "keypoints" ? 0 : 3) +
-         " " + unit;
+  return (margin < 0 ? "" : "+") + fixed(margin, unit.decimals) + " " + unit.name;
 }
 
 /// Where to look: the panel of each experiment, and why nothing or not all could be decided.

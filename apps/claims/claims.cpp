@@ -21,17 +21,16 @@ constexpr std::uint64_t kSeed = 1;
 
 /// The experiments of all runs, and how to draw from their pairs.
 struct Study {
-  std::vector<std::vector<ExperimentTable>> tables;  // of each run
   ClaimData data;
   std::vector<std::size_t> sizes;    // rows of each slot
   std::vector<std::uint64_t> seeds;  // of each slot: levels of the same pairs are drawn alike
   std::map<std::string, std::string> figures;
 };
 
-bool asks_for(const ClaimBook& book, const std::string& experiment, Quantity quantity) {
+bool asks_for(const ClaimBook& book, const std::string& experiment, Quantity::Kind kind) {
   for (const Claim& claim : book.claims)
     for (const ClaimPart& part : claim.parts)
-      if (part.of == quantity &&
+      if (part.of.kind == kind &&
           std::find(part.experiments.begin(), part.experiments.end(), experiment) != part.experiments.end())
         return true;
   return false;
@@ -58,8 +57,8 @@ void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, c
   if (study.data.count(name)) throw IoError(run.folder, "", "the experiment " + name + " stands in another run too");
   study.figures[name] = table.info.figure;
   std::vector<RowNumbers> agreement(table.levels.size()), keypoints(table.levels.size());
-  if (asks_for(book, name, Quantity::Agreement)) agreement = selection_agreement(run, table, book.methods);
-  if (asks_for(book, name, Quantity::KeypointDensity)) keypoints = keypoint_densities(run, table);
+  if (asks_for(book, name, Quantity::Kind::Agreement)) agreement = selection_agreement(run, table, book.methods);
+  if (asks_for(book, name, Quantity::Kind::KeypointDensity)) keypoints = keypoint_densities(run, table);
   std::vector<LevelSource>& sources = study.data[name];
   for (std::size_t i = 0; i < table.levels.size(); ++i) {
     const LevelTable& level = table.levels[i];
@@ -71,13 +70,10 @@ void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, c
   }
 }
 
-Study study_of(const ClaimBook& book, const std::vector<RunFolder>& runs) {
+Study study_of(const ClaimBook& book, const std::vector<StudyResults>& studies) {
   Study study;
-  study.tables.reserve(runs.size());  // the data points into them
-  for (const RunFolder& run : runs) {
-    study.tables.push_back(experiment_tables(run));
-    for (const ExperimentTable& table : study.tables.back()) add_experiment(study, book, run, table);
-  }
+  for (const StudyResults& results : studies)
+    for (const ExperimentTable& table : results.tables) add_experiment(study, book, *results.run, table);
   return study;
 }
 
@@ -136,36 +132,28 @@ Verdict verdict_of(const std::vector<Rule>& rules, const Draws& draws) {
   return all;
 }
 
-std::string unit_of(const ClaimPart& part) {
+MarginUnit unit_of(const ClaimPart& part) {
   switch (part.take) {
     case Take::Spearman:
     case Take::Correlation:
-    case Take::PairSpearman:
-      return "correlation";
+      return {"correlation"};
     case Take::Slope:
-      return "slope";
+      return {"slope"};
     case Take::Wins:
-      return "cells";
+      return {"cells", 0};
     case Take::MeanRank:
-      return "ranks";
-    case Take::PairCount:
-      return "pairs";
+      return {"ranks"};
+    case Take::Count:
+      return {"pairs", 0};
     case Take::RelativeDrop:
-    case Take::RelativeLoss:
-      return "share lost";
+      return {"share lost"};
     default:
       break;
   }
-  static const std::map<Quantity, std::string> names = {{Quantity::Precision, "precision"},
-                                                        {Quantity::Recall, "recall"},
-                                                        {Quantity::F1, "F1"},
-                                                        {Quantity::Time, "ln time"},
-                                                        {Quantity::InlierRatio, "inlier ratio"},
-                                                        {Quantity::FrameShare, "frame share"},
-                                                        {Quantity::Value, "of the axis"},
-                                                        {Quantity::Agreement, "Jaccard"},
-                                                        {Quantity::KeypointDensity, "keypoints"}};
-  return names.at(part.of);
+  if (part.of.kind == Quantity::Kind::Value) return {"of the axis"};
+  if (part.of.kind == Quantity::Kind::Agreement) return {"Jaccard"};
+  if (part.of.kind == Quantity::Kind::KeypointDensity) return {"keypoints", 0};
+  return {(part.of.is_time() ? "ln " : "") + part.of.measure->title};
 }
 
 std::string levels_text(const Rule& rule, const std::vector<Outcome>& outcomes) {
@@ -186,8 +174,8 @@ PartVerdict judge_part(const Rule& rule, const Draws& draws) {
   if (!verdict.reason.empty()) return verdict;
   const Outcome outcome = rule.outcome(draws);
   if (std::isnan(outcome.margin)) {
-    verdict.reason = rule.part->take >= Take::PairMean ? "too few pairs to go by, or their numbers are not in the run"
-                                                       : "a number is missing: of a method, or at a level";
+    verdict.reason = rule.part->over_pairs ? "too few pairs to go by, or their numbers are not in the run"
+                                           : "a number is missing: of a method, or at a level";
     return verdict;
   }
   verdict.verdict = outcome.holds ? Verdict::Holds : Verdict::Fails;
@@ -212,7 +200,7 @@ ClaimVerdict judge(const ClaimBook& book, const Claim& claim, const Study& study
     }
     verdict.parts.push_back(part);
     std::vector<std::string> names = claim.parts[i].experiments;
-    if (!claim.parts[i].with.empty()) names.push_back(claim.parts[i].with);
+    names.insert(names.end(), claim.parts[i].with.begin(), claim.parts[i].with.end());
     for (const std::string& name : names) {
       if (std::find(verdict.experiments.begin(), verdict.experiments.end(), name) != verdict.experiments.end())
         continue;
@@ -256,8 +244,8 @@ std::string verdict_name(Verdict verdict) {
   }
 }
 
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<RunFolder>& runs) {
-  const Study study = study_of(book, runs);
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies) {
+  const Study study = study_of(book, studies);
   const Draws draws = all_rows(study);
   std::vector<ClaimVerdict> verdicts;
   for (const Claim& claim : book.claims) verdicts.push_back(judge(book, claim, study, draws));

@@ -6,12 +6,18 @@
 #include <vector>
 
 #include "apps/claims/claim_file.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_results.h"
 
 namespace corral {
 
 enum class Verdict { Holds, Fails, Undecidable };
 std::string verdict_name(Verdict verdict);
+
+/// What a margin is in, and with how many decimals it is told.
+struct MarginUnit {
+  std::string name;
+  int decimals = 3;
+};
 
 /// What came out of one rule.
 struct PartVerdict {
@@ -19,7 +25,7 @@ struct PartVerdict {
   Verdict verdict = Verdict::Undecidable;
   std::string reason;  ///< why it is undecidable; else empty
   double margin = 0;   ///< from the boundary, below 0 on the failing side; only if it was decided
-  std::string unit;    ///< of the margin
+  MarginUnit unit;
   std::string levels;  ///< for rules about each level: where it holds, such as "2 of 3 levels: 0.35 0.4"
   bool is_note = false;
 };
@@ -29,7 +35,7 @@ struct ClaimVerdict {
   std::string id, text, note;
   Verdict verdict = Verdict::Undecidable;
   std::optional<double> margin;  ///< the least of its rules'
-  std::string unit;
+  MarginUnit unit;
   double changed = 0;         ///< share of the resamples over pairs with another verdict
   bool is_weak = false;       ///< more than 20 %
   bool is_sensitive = false;  ///< (P + R) / 2 instead of F1 gives another verdict
@@ -38,7 +44,7 @@ struct ClaimVerdict {
   std::vector<std::string> figures;      ///< the panel of each, empty if it has none
 };
 
-/// Judges every claim on what several runs hold together. Throws InvalidInput if two of them have the same experiment.
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<RunFolder>& runs);
+/// Judges every claim on what several studies hold together. Throws InvalidInput if two of them have the same experiment.
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies);
 
 }  // namespace corral

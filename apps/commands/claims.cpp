@@ -15,9 +15,8 @@ struct Settings {
 
 int judge(const Settings& settings) {
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
-  std::vector<RunFolder> runs;
-  for (const std::string& folder : settings.runs) runs.push_back(read_run(folder));
-  const std::vector<ClaimVerdict> verdicts = judge_claims(book, runs);
+  const std::vector<RunFolder> runs = read_runs(settings.runs);
+  const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs));
   if (!settings.json) {
     put("", claims_text(verdicts, book.slips));
     return kOk;

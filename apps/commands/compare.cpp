@@ -71,9 +71,9 @@ std::string means_text(const MethodComparison& comparison) {
   return text;
 }
 
-std::string tests_text(const MethodComparison& comparison, Metric metric) {
+std::string tests_text(const MethodComparison& comparison, const Measure& measure) {
   TextTable table(
-      {"methods", "difference", "95 % interval", metric == Metric::Success ? "McNemar p" : "Wilcoxon p", "Holm's p"});
+      {"methods", "difference", "95 % interval", measure.has(kYesOrNo) ? "McNemar p" : "Wilcoxon p", "Holm's p"});
   for (const MethodPair& pair : comparison.tests)
     table.add({pair.first + " - " + pair.second, fixed(pair.difference.mean, 4), interval_text(pair.difference, 4),
                p_text(pair.p) + (pair.is_exact ? "" : "~"), p_text(pair.adjusted_p)});
@@ -87,13 +87,16 @@ std::string levels_text(const MethodComparison& comparison) {
   header.insert(header.end(), comparison.methods.begin(), comparison.methods.end());
   TextTable table(header);
   std::vector<std::string> row;
+  int pairs = 0;
   for (const LevelMean& mean : comparison.levels) {
     if (row.empty() || row.front() != mean.level) {
       if (!row.empty()) table.add(row);
       row.assign(header.size(), "");
       row[0] = mean.level;
+      pairs = 0;
     }
-    row[1] = std::to_string(std::max(mean.pairs, row[1].empty() ? 0 : std::stoi(row[1])));
+    pairs = std::max(mean.pairs, pairs);
+    row[1] = std::to_string(pairs);
     const auto column = std::find(header.begin() + 2, header.end(), mean.method) - header.begin();
     row[static_cast<std::size_t>(column)] =
         fixed(mean.mean.mean, 2) + " " + fixed(mean.mean.low, 2) + ".." + fixed(mean.mean.high, 2);
@@ -102,23 +105,23 @@ std::string levels_text(const MethodComparison& comparison) {
   return table.str();
 }
 
-std::string to_text(const MethodComparison& comparison, const std::string& metric) {
-  std::string text = comparison.experiment + ": " + metric + " on " + std::to_string(comparison.pairs) +
+std::string to_text(const MethodComparison& comparison, const Measure& measure) {
+  std::string text = comparison.experiment + ": " + measure.word() + " on " + std::to_string(comparison.pairs) +
                      (comparison.pairs == 1 ? " pair" : " pairs") +
                      " (all levels; empty selections count as 0, pairs without true matches are left out)\n";
   if (comparison.means.empty()) return text + "nothing to compare\n\n";
-  return text + means_text(comparison) + "\n" + tests_text(comparison, metric_of(metric)) +
+  return text + means_text(comparison) + "\n" + tests_text(comparison, measure) +
          "\nBy level, with the 95 % interval\n" + levels_text(comparison) + "\n";
 }
 
 int compare(const Settings& settings) {
-  const Metric metric = metric_of(settings.metric);
+  const Measure& measure = metric_of(settings.metric);
   std::vector<MethodComparison> comparisons;
   std::string names;
   for (const ExperimentTable& table : experiment_tables(read_run(settings.run))) {
     names += (names.empty() ? "" : ", ") + table.info.name;
     if (settings.experiment.empty() || settings.experiment == table.info.name)
-      comparisons.push_back(compare_methods(table, metric));
+      comparisons.push_back(compare_methods(table, measure));
   }
   if (comparisons.empty() && !settings.experiment.empty())
     throw UsageError("--experiment " + settings.experiment + ": the run has " + (names.empty() ? "none" : names));
@@ -126,7 +129,7 @@ int compare(const Settings& settings) {
   std::string text;
   for (const MethodComparison& comparison : comparisons) {
     json.push_back(to_json(comparison));
-    text += to_text(comparison, settings.metric);
+    text += to_text(comparison, measure);
   }
   if (settings.json)
     put("", Json{{"metric", settings.metric}, {"experiments", json}});
@@ -141,9 +144,7 @@ void add_compare(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("compare", "Which differences between the groupers of a run are more than chance");
   auto settings = std::make_shared<Settings>();
   command->add_option("run", settings->run, "Folder of corral evaluate")->type_name("RUN")->required();
-  command
-      ->add_option("--metric", settings->metric,
-                   "f1, precision, recall or success (refined mean error of at most 5 pr)")
+  command->add_option("--metric", settings->metric, "What to compare by (success: refined mean error of at most 5 pr)")
       ->check(CLI::IsMember(metric_names()))
       ->capture_default_str();
   command->add_option("--experiment", settings->experiment, "Only this one")->type_name("NAME");

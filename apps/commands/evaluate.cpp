@@ -27,10 +27,11 @@ struct Settings {
 /// What is shown of a method in an experiment: the mean of its levels.
 struct Overview {
   int levels = 0, pairs = 0, excluded = 0, empty = 0, failed = 0;
-  double precision = 0, recall = 0, f1 = 0, success = 0;
+  std::vector<double> sums;  ///< of the headline measures
 };
 
 std::string overview_text(const std::vector<SummaryRow>& rows) {
+  const std::vector<const Measure*> headline = measures_with(kHeadline);
   std::vector<std::pair<std::string, std::string>> order;
   std::map<std::pair<std::string, std::string>, Overview> cells;
   for (const SummaryRow& row : rows) {
@@ -38,19 +39,25 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
     if (!cells.count(key)) order.push_back(key);
     Overview& cell = cells[key];
     cell.pairs += row.pairs, cell.excluded += row.excluded, cell.empty += row.empty, cell.failed += row.failed;
+    cell.sums.resize(headline.size());
     if (row.pairs == 0) continue;
     ++cell.levels;
-    cell.precision += row.precision->mean, cell.recall += row.recall->mean, cell.f1 += row.f1->mean,
-        cell.success += row.success->mean;
+    for (std::size_t i = 0; i < headline.size(); ++i) cell.sums[i] += *row.of(headline[i]->name).value;
   }
-  TextTable table(
-      {"experiment", "method", "pairs", "excluded", "empty", "failed", "precision", "recall", "F1", "success"});
+  std::vector<std::string> header = {"experiment", "method", "pairs", "excluded", "empty", "failed"};
+  for (const Measure* measure : headline) header.push_back(measure->title);
+  TextTable table(header);
   for (const auto& key : order) {
     const Overview& cell = cells.at(key);
-    const auto mean = [&](double sum) { return cell.levels > 0 ? fixed(sum / cell.levels, 3) : std::string(); };
-    table.add({key.first, key.second, std::to_string(cell.pairs), std::to_string(cell.excluded),
-               std::to_string(cell.empty), std::to_string(cell.failed), mean(cell.precision), mean(cell.recall),
-               mean(cell.f1), mean(cell.success)});
+    std::vector<std::string> line = {key.first,
+                                     key.second,
+                                     std::to_string(cell.pairs),
+                                     std::to_string(cell.excluded),
+                                     std::to_string(cell.empty),
+                                     std::to_string(cell.failed)};
+    for (std::size_t i = 0; i < headline.size(); ++i)
+      line.push_back(cell.levels > 0 ? fixed(cell.sums[i] / cell.levels, headline[i]->decimals) : "");
+    table.add(line);
   }
   return table.str() +
          "Means over the levels of an experiment, at each over its pairs; an empty selection has precision and recall "

@@ -34,7 +34,7 @@ int group(const Settings& settings) {
                  {"selected", nullptr},
                  {"time_ms", nullptr},
                  {"repeat", settings.repeat},
-                 {"status", refusal.empty() ? "grouped" : "too large: " + refusal}};
+                 {"status", refusal.empty() ? "grouped" : to_text(MethodStatus{MethodState::TooLarge, refusal})}};
   if (refusal.empty()) {
     const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
     report["selected"] = timed.found.selected.size();

@@ -26,16 +26,16 @@ struct Settings {
 };
 
 /// For every experiment with two methods or more on common pairs, their average ranks by F1 and by success.
-std::vector<RankDiagram> rank_diagrams(const std::vector<RunFolder>& runs) {
+std::vector<RankDiagram> rank_diagrams(const std::vector<StudyResults>& studies) {
   std::vector<RankDiagram> diagrams;
-  for (const RunFolder& run : runs)
-    for (const ExperimentTable& table : experiment_tables(run))
-      for (const auto& [metric, measure] : {std::pair(Metric::F1, "F1"), std::pair(Metric::Success, "success")}) {
-        const MethodComparison compared = compare_methods(table, metric);
+  for (const StudyResults& study : studies)
+    for (const ExperimentTable& table : study.tables)
+      for (const Measure* measure : {&corral::measure("f1"), &corral::measure("success_5pr")}) {
+        const MethodComparison compared = compare_methods(table, *measure);
         if (compared.methods.size() < 2 || compared.pairs < 2) continue;
         const ExperimentInfo& info = table.info;
-        diagrams.push_back({file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-ranks-" + measure,
-                            info.title + ": average ranks by " + measure, compared.methods,
+        diagrams.push_back({file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-ranks-" + measure->title,
+                            info.title + ": average ranks by " + measure->title, compared.methods,
                             compared.ranks.average_ranks, compared.ranks.critical_difference, compared.ranks.cliques});
       }
   return diagrams;
@@ -75,28 +75,28 @@ bool write_pictures(const GalleryPair& pair, const std::string& folder) {
 }
 
 /// The findings, and everything on one page.
-void write_page(const std::vector<RunFolder>& runs, const Settings& settings) {
+void write_page(const std::vector<RunFolder>& runs, const std::vector<StudyResults>& studies,
+                const Settings& settings) {
   const ClaimBook book = built_in_claims();
-  const std::vector<ClaimVerdict> verdicts = judge_claims(book, runs);
   PageOptions options;
   options.pairs_in_3d = settings.pairs_in_3d;
-  options.verdicts = claims_json(verdicts).dump();
+  options.verdicts = judge_claims(book, studies);
   const std::string folder = settings.output + "/";
-  write_file(folder + "claims.txt", claims_text(verdicts, book.slips));
-  write_file(folder + "index.html", report_page(runs, options));
+  write_file(folder + "claims.txt", claims_text(*options.verdicts, book.slips));
+  write_file(folder + "index.html", report_page(runs, studies, options));
 }
 
 int report(const Settings& settings) {
-  std::vector<RunFolder> runs;
-  for (const std::string& run : settings.runs) runs.push_back(read_run(run));
-  const StudyFigures figures = study_figures(runs);
+  const std::vector<RunFolder> runs = read_runs(settings.runs);
+  const std::vector<StudyResults> studies = results_of(runs);
+  const StudyFigures figures = study_figures(studies);
   const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
   const std::string folder = settings.output + "/", pictures = folder + "pairs/";
   make_folder(gallery.empty() ? folder : pictures);
-  const std::vector<std::string> names = write_figures(figures, rank_diagrams(runs), folder);
+  const std::vector<std::string> names = write_figures(figures, rank_diagrams(studies), folder);
   Progress progress(40 + static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
   progress.begin("page", 40);
-  write_page(runs, settings);
+  write_page(runs, studies, settings);
   bool is_whole = true;
   for (const GalleryPair& pair : gallery) {
     progress.begin("pictures of " + pair.name(), 40);

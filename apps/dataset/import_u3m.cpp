@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kOverlapPr = 2;
 constexpr const char* kTo = "-to-";
 
 /// The views of one object.
@@ -201,7 +200,7 @@ class Import {
     options_.parallel(static_cast<int>(truths.size()), [&](int i) {
       const TruePair& pair = truths[std::size_t(i)];
       overlaps[std::size_t(i)] = overlap_share(views.mesh(pair.source).vertices, views.mesh(pair.target).vertices,
-                                               pair.target_from_source, kOverlapPr * views.resolution());
+                                               pair.target_from_source, kOverlapSharePr * views.resolution());
       in_front[std::size_t(i)] = views.share_in_front(pair.source, pair.target, pair.target_from_source);
     });
     std::vector<FileContent> files;

@@ -17,7 +17,7 @@ namespace corral {
 namespace {
 
 constexpr int kRing = 16;
-constexpr double kOverlapPr = 2, kLeastOverlap = 0.3, kMostOverlap = 0.9;
+constexpr double kLeastOverlap = 0.3, kMostOverlap = 0.9;
 
 std::string recipe(const MakeU3mOptions& options, const std::vector<NamedMesh>& models) {
   return "make u3m\nseed " + std::to_string(options.seed) + "\nviews " + std::to_string(options.views) + "\nnoise_pr " +
@@ -77,7 +77,7 @@ std::vector<ViewPair> measure_pairs(const std::vector<View>& views, const Parall
     const View& target = views[static_cast<std::size_t>(pair.target)];
     pair.target_from_source = target.sensor_from_world * source.sensor_from_world.inverse();
     pair.overlap = overlap_share(source.points, target.points, pair.target_from_source,
-                                 kOverlapPr * (source.resolution + target.resolution) / 2);
+                                 kOverlapSharePr * (source.resolution + target.resolution) / 2);
   });
   return pairs;
 }

@@ -13,7 +13,7 @@
 namespace corral {
 namespace {
 
-constexpr double kNear = 2, kRightMatch = 4;  // pr
+constexpr double kRightMatch = 4;  // pr
 
 std::optional<double> percent_without(const std::optional<double>& shared) {
   if (!shared) return std::nullopt;
@@ -51,7 +51,7 @@ PairMeasures measure_pair(const Dataset& dataset, const SweptPair& pair) {
   PairMeasures measures;
   if (!pair.is_complete() || !pair.truth) return measures;
   const Mesh &source = pair.source.mesh, &target = pair.target.mesh;
-  const double near = kNear * pair_resolution(dataset, pair.source.resolution, pair.target.resolution);
+  const double near = kOverlapSharePr * pair_resolution(dataset, pair.source.resolution, pair.target.resolution);
   measures.overlap = 100 * overlap_share(source.vertices, target.vertices, *pair.truth, near);
   measures.occlusion = percent_without(shared_area(source, target.vertices, *pair.truth, near));
   measures.clutter = percent_without(shared_area(target, source.vertices, pair.truth->inverse(), near));

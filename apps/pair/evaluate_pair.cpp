@@ -11,9 +11,6 @@
 namespace corral {
 namespace {
 
-/// A source vertex is in the overlap if its true image has a target vertex this near.
-constexpr double kOverlapPr = 4;
-
 /// Scores what was found, and refines and judges its pose.
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
   if (truth)
@@ -33,7 +30,7 @@ PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransfor
 
 Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
                          double resolution) {
-  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPr * resolution);
+  return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPointsPr * resolution);
 }
 
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution) {
@@ -55,10 +52,9 @@ std::string MethodRecord::outcome() const {
   return in_the_end ? (at_first ? "found" : "saved") : (at_first ? "spoiled" : "lost");
 }
 
-std::string MethodRecord::status() const {
-  if (!failure.empty()) return (is_too_large ? "too large: " : "failed: ") + failure;
-  if (pose.target_from_source && !pose.converged) return "not converged";
-  return to_text(pose.status);
+MethodStatus MethodRecord::status() const {
+  if (!failure.empty()) return {is_too_large ? MethodState::TooLarge : MethodState::Failed, failure};
+  return status_of(pose);
 }
 
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/pair/method_status.h"
 #include "grouping/registry.h"
 #include "kernel/evaluation.h"
 #include "kernel/surface/mesh/mesh.h"
@@ -63,8 +64,7 @@ struct MethodRecord {
   /// without a truth or an answer.
   std::string outcome() const;
 
-  /// "refined", "not converged" (a pose that was still moving), why there is no pose, "too large: ..." or "failed: ...".
-  std::string status() const;
+  MethodStatus status() const;
 };
 
 /// The median wall time of `repeat` calls (at least 1) and the answer of the first.

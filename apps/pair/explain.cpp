@@ -92,7 +92,7 @@ std::string fault_of(const GroupingScore& score) {
 std::string text_of_method(Cause cause, const MethodRecord& record) {
   switch (cause) {
     case Cause::NoAnswer:
-      return "gave no answer: " + record.status();
+      return "gave no answer: " + to_text(record.status());
     case Cause::Found:
       return "the grouper found it: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::Saved:

@@ -52,7 +52,7 @@ Json method_row(const MethodRecord& record) {
   add_errors(row, "", record.errors, is_judged);
   add_errors(row, "initial_", record.initial_errors, is_judged);
   row["outcome"] = is_judged ? Json(record.outcome()) : Json(nullptr);
-  row["status"] = record.status();
+  row["status"] = to_text(record.status());
   return row;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 
+#include "apps/claims/claim_report.h"
 #include "apps/report/page_scenes.h"
 #include "apps/report/page_tables.h"
 #include "apps/runtime/embedded_files.h"
@@ -57,25 +58,14 @@ std::string libraries(const std::string& folder) {
   return scripts;
 }
 
-Json verdicts_of(const std::string& text) {
-  if (text.empty()) return nullptr;
-  const Json verdicts = Json::parse(text, nullptr, false);
-  bool is_good = verdicts.is_array();
-  if (is_good)
-    for (const Json& verdict : verdicts)
-      is_good = is_good && verdict.is_object() && verdict.contains("id") && verdict.contains("verdict");
-  if (!is_good)
-    throw InvalidInput("report_page", "verdicts", text.substr(0, 40),
-                       "a JSON list of {id, verdict, margin, statement}");
-  return verdicts;
-}
-
 }  // namespace
 
-std::string report_page(const std::vector<RunFolder>& runs, const PageOptions& options) {
+std::string report_page(const std::vector<RunFolder>& runs, const std::vector<StudyResults>& studies,
+                        const PageOptions& options) {
   const std::string scripts = libraries(options.scripts);
-  Json data = {{"title", options.title}, {"verdicts", verdicts_of(options.verdicts)}};
-  data.update(page_tables(runs));
+  Json data = {{"title", options.title},
+               {"verdicts", options.verdicts ? claims_json(*options.verdicts) : Json(nullptr)}};
+  data.update(page_tables(studies));
   data.update(page_scenes(runs, choose_scenes(runs, options.pairs_in_3d)));
   const EmbeddedFiles& files = embedded_page();
   std::string own;

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
+#include <map>
 
 #include "apps/report/figure/method_style.h"
 #include "apps/runtime/json.h"
-#include "io/csv_file.h"
 #include "io/file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -47,45 +46,30 @@ Json facts_of(const RunFolder& run) {
 }
 
 /// The rows that belong to the experiment: names of level and method, the rest as numbers.
-Json means_of(const ExperimentInfo& experiment, const std::string& path, const CsvTable& summary) {
+Json means_of(const StudyResults& study, const ExperimentInfo& experiment) {
   Json means = Json::array();
-  const auto cell = [&](std::size_t row, const char* name) {
-    return summary.rows[row][static_cast<std::size_t>(summary.column(name))];
-  };
-  for (std::size_t row = 0; row < summary.rows.size(); ++row) {
-    if (cell(row, "experiment") != experiment.name) continue;
-    Json mean = {{"level", cell(row, "level")}, {"method", cell(row, "method")}};
-    for (std::size_t column = 0; column < summary.header.size(); ++column) {
-      const std::string &name = summary.header[column], &text = summary.rows[row][column];
-      if (mean.contains(name) || name == "experiment" || name == "dataset") continue;
-      const auto number = parse_double(text);
-      if (!text.empty() && !number)
-        throw IoError(path, "row " + std::to_string(row + 1), "the " + name + " '" + text + "' is no number");
-      mean[name] = rounded(number);
-    }
-    means.push_back(mean);
+  if (is_of_times(experiment)) {
+    for (const TimeRow& row : time_rows(experiment, study.run->records))
+      means.push_back({{"level", row.level},
+                       {"method", row.method},
+                       {"runs", rounded(row.runs)},
+                       {"median_ms", rounded(row.median_ms)},
+                       {"mean_ms", rounded(row.mean_ms)},
+                       {"lower_quartile_ms", rounded(row.lower_quartile_ms)},
+                       {"upper_quartile_ms", rounded(row.upper_quartile_ms)}});
+    return means;
+  }
+  for (const SummaryRow& row : study.summary) {
+    if (row.experiment != experiment.name) continue;
+    Json& mean = means.emplace_back(Json{{"level", row.level}, {"method", row.method}});
+    for (const SummaryCell& cell : summary_cells(row))
+      mean[cell.name] = rounded(cell.count ? std::optional<double>(*cell.count) : cell.value);
   }
   return means;
 }
 
-/// The means of a study, or the times of a run that took nothing else.
-CsvTable means_table(const RunFolder& run, std::string& path) {
-  path = path_in(run, "summary.csv");
-  std::vector<std::string> columns = {"experiment", "level",  "method", "pairs",
-                                      "precision",  "recall", "f1",     "success_5pr"};
-  if (!std::filesystem::exists(path) && std::filesystem::exists(path_in(run, "time.csv"))) {
-    path = path_in(run, "time.csv");
-    columns = {"experiment", "level", "method", "runs", "median_ms"};
-  }
-  CsvTable table = read_csv(path);
-  for (const std::string& name : columns)
-    if (table.column(name) < 0) throw IoError(path, "header", "the column " + name + " is missing");
-  return table;
-}
-
-Json experiments_of(const RunFolder& run, int number) {
-  std::string path;
-  const CsvTable summary = means_table(run, path);
+Json experiments_of(const StudyResults& study, int number) {
+  const RunFolder& run = *study.run;
   Json experiments = Json::array();
   for (const ExperimentInfo& experiment : run.experiments) {
     Json levels = Json::array(), bounds = Json::array();
@@ -106,7 +90,7 @@ Json experiments_of(const RunFolder& run, int number) {
                            {"bounds", bounds},
                            {"threshold_pr", rounded(experiment.threshold_pr)},
                            {"least_true_matches", experiment.least_true_matches},
-                           {"means", means_of(experiment, path, summary)}});
+                           {"means", means_of(study, experiment)}});
   }
   return experiments;
 }
@@ -126,39 +110,46 @@ class Words {
   std::vector<std::string> words_;
 };
 
-Json whole(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
-
-void add_record(Json& columns, Words& words, int run, const StudyRecord& record) {
+void add_record(Json& columns, Words& words, int run, const StudyRecord& record, PairRole role) {
   columns["run"].push_back(run);
+  const std::string status = to_text(record.status);
   for (const auto& [name, word] : {std::pair<const char*, const std::string*>{"experiment", &record.experiment},
                                    {"dataset", &record.dataset},
                                    {"level", &record.level},
                                    {"pair", &record.pair},
                                    {"method", &record.method},
-                                   {"status", &record.status},
+                                   {"status", &status},
                                    {"selection", &record.selection}})
     columns[name].push_back(words.number(*word));
   columns["repeat"].push_back(record.repeat);
-  columns["matches"].push_back(whole(record.matches));
-  columns["true_matches"].push_back(whole(record.true_matches));
-  columns["selected"].push_back(whole(record.selected));
-  columns["correct"].push_back(whole(record.correct));
-  columns["precision"].push_back(rounded(record.precision));
-  columns["recall"].push_back(rounded(record.recall));
-  columns["f1"].push_back(rounded(record.f1));
-  columns["initial_mean_error_pr"].push_back(rounded(record.initial.mean_error_pr));
-  columns["refined_mean_error_pr"].push_back(rounded(record.refined.mean_error_pr));
-  columns["dense_mean_error_pr"].push_back(rounded(record.dense.mean_error_pr));
-  columns["rotation_error_deg"].push_back(rounded(record.refined.rotation_error_deg));
-  columns["translation_error_pr"].push_back(rounded(record.refined.translation_error_pr));
-  columns["time_ms"].push_back(rounded(record.time_ms));
+  columns["excluded"].push_back(role == PairRole::Excluded ? 1 : 0);
+  for (const Measure* measure : measures_with(kOnPage)) {
+    const std::optional<double> number = measure->of(record);
+    columns[measure->name].push_back(measure->stored.count && number ? Json(static_cast<int>(*number))
+                                                                     : rounded(number));
+  }
+}
+
+/// What there is to show: the measures of a mean that has a panel, and those of single records.
+Json measures_of() {
+  Json shown = Json::array();
+  for (const Measure& measure : measures())
+    if (measure.has(kHeadline | kOnPage))
+      shown.push_back({{"name", measure.name},
+                       {"title", measure.title},
+                       {"axis", measure.axis_title()},
+                       {"unit", measure.unit},
+                       {"decimals", measure.decimals},
+                       {"panel", measure.has(kHeadline)},
+                       {"record", measure.has(kOnPage)}});
+  return shown;
 }
 
 /// How each method looks in the figures.
-Json styles_of(const std::vector<RunFolder>& runs) {
+Json styles_of(const std::vector<StudyResults>& studies) {
   std::vector<std::string> methods = {"oracle", "floor"};
-  for (const RunFolder& run : runs)
-    for (const ExperimentInfo& experiment : run.experiments)
+  for (const StudyResults& study : studies)
+    for (const ExperimentInfo& experiment : study.run->experiments)
       methods.insert(methods.end(), experiment.methods.begin(), experiment.methods.end());
   Json styles = Json::object();
   for (const auto& [method, style] : method_styles(methods))
@@ -168,21 +159,23 @@ Json styles_of(const std::vector<RunFolder>& runs) {
 
 }  // namespace
 
-Json page_tables(const std::vector<RunFolder>& runs) {
+Json page_tables(const std::vector<StudyResults>& studies) {
   Json folders = Json::array(), experiments = Json::array(), columns = Json::object();
   Words words;
-  for (std::size_t number = 0; number < runs.size(); ++number) {
-    const RunFolder& run = runs[number];
+  for (std::size_t number = 0; number < studies.size(); ++number) {
+    const RunFolder& run = *studies[number].run;
     const std::string name = std::filesystem::path(run.folder).lexically_normal().filename().string();
     folders.push_back({{"folder", name.empty() ? run.folder : name}, {"facts", facts_of(run)}});
-    for (const Json& experiment : experiments_of(run, static_cast<int>(number))) experiments.push_back(experiment);
-    for (const StudyRecord& record : run.records) add_record(columns, words, static_cast<int>(number), record);
+    for (const Json& experiment : experiments_of(studies[number], static_cast<int>(number)))
+      experiments.push_back(experiment);
+    std::map<std::string, int> least;
+    for (const ExperimentInfo& experiment : run.experiments) least[experiment.name] = experiment.least_true_matches;
+    for (const StudyRecord& record : run.records)
+      add_record(columns, words, static_cast<int>(number), record, role_of(record, least[record.experiment]));
   }
-  return {{"runs", folders},
-          {"experiments", experiments},
-          {"styles", styles_of(runs)},
-          {"words", words.list()},
-          {"records", columns}};
+  return {{"runs", folders},           {"experiments", experiments},
+          {"measures", measures_of()}, {"styles", styles_of(studies)},
+          {"words", words.list()},     {"records", columns}};
 }
 
 }  // namespace corral

@@ -4,16 +4,17 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/results/run_folder.h"
+#include "apps/results/study_results.h"
 
 namespace corral {
 
 /// What a page shows in figures and tables, as JSON of numbers rounded to five digits:
 ///   runs         {folder, facts}: the manifest without its experiments and pairs
 ///   experiments  {run, name, title, figure, dataset, attribute, axis, levels, methods, bounds, threshold_pr,
-///                least_true_matches, means}, means: the rows of summary.csv, or else time.csv
-///   records      columns: {name: [a cell per record]}; names that repeat are numbers of `words`
+///                least_true_matches, means}, means: the rows of the summary, or of the times
+///   measures     {name, title, axis, unit, decimals, panel, record}: those of a panel, or of a column of the records
+///   records      columns: {name: [a cell per record]}; names that repeat are numbers of `words`; `excluded` is 0 or 1
 /// Throws IoError for a file that is missing or wrong.
-nlohmann::ordered_json page_tables(const std::vector<RunFolder>& runs);
+nlohmann::ordered_json page_tables(const std::vector<StudyResults>& studies);
 
 }  // namespace corral

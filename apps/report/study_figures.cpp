@@ -2,11 +2,9 @@
 #include "apps/report/study_figures.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <set>
 
-#include "io/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
@@ -14,54 +12,22 @@
 namespace corral {
 namespace {
 
-/// A column of summary.csv that becomes a panel.
-struct Measure {
-  std::string column, name, axis;
-  bool of_pose = false;  ///< then the bounds stand beside the methods
-};
+/// The rows of an experiment in the summary, by level and method.
+using SummaryRows = std::map<std::pair<std::string, std::string>, const SummaryRow*>;
 
-const std::vector<Measure> kMeasures = {
-    {"precision", "precision", "precision"},
-    {"recall", "recall", "recall"},
-    {"f1", "f1", "F1"},
-    {"success_5pr", "success", "aligned within 5 pr", true},
-    {"initial_success_5pr", "initial-success", "aligned within 5 pr, unrefined", true},
-    {"dense_success_5pr", "dense-success", "aligned within 5 pr, dense", true}};
+SummaryRows rows_of(const StudyResults& study, const ExperimentInfo& info) {
+  SummaryRows rows;
+  for (const SummaryRow& row : study.summary)
+    if (row.experiment == info.name) rows[{row.level, row.method}] = &row;
+  return rows;
+}
 
-/// The rows of a summary that belong to one experiment.
-class Summary {
- public:
-  Summary(const std::string& path, const CsvTable& table, const ExperimentInfo& info) : path_(path), table_(table) {
-    const std::vector<std::string> first = {"experiment", "dataset", "level", "method"};
-    if (table.header.size() < 4 || !std::equal(first.begin(), first.end(), table.header.begin()))
-      throw IoError(path, "header", "expected experiment,dataset,level,method and the means");
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-      const auto& cells = table.rows[row];
-      if (cells[0] == info.name && cells[1] == info.dataset) rows_[{cells[2], cells[3]}] = row;
-    }
-  }
-
-  bool has(const std::string& column) const { return table_.column(column) >= 0; }
-
-  std::string text(const std::string& level, const std::string& method, const std::string& column) const {
-    const auto row = rows_.find({level, method});
-    const int place = table_.column(column);
-    return row == rows_.end() || place < 0 ? "" : table_.rows[row->second][static_cast<std::size_t>(place)];
-  }
-
-  std::optional<double> number(const std::string& level, const std::string& method, const std::string& column) const {
-    const std::string cell = text(level, method, column);
-    if (cell.empty()) return std::nullopt;
-    const auto value = parse_double(cell);
-    if (!value) throw IoError(path_, column, "found '" + cell + "', expected a number or nothing");
-    return value;
-  }
-
- private:
-  const std::string& path_;
-  const CsvTable& table_;
-  std::map<std::pair<std::string, std::string>, std::size_t> rows_;
-};
+/// The name of a measure as a part of a file name.
+std::string file_part(const Measure& measure) {
+  std::string part = measure.word();
+  std::replace(part.begin(), part.end(), ' ', '-');
+  return part;
+}
 
 Panel empty_panel(const ExperimentInfo& info, const std::string& measure) {
   Panel panel;
@@ -95,30 +61,33 @@ std::string pairs_note(const ExperimentInfo& info) {
          std::to_string(info.least_true_matches) + ", for all methods.";
 }
 
-Panel level_panel(const ExperimentInfo& info, const Summary& summary, const Measure& measure) {
-  Panel panel = empty_panel(info, measure.name);
-  panel.y_axis = measure.axis;
+Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Measure& measure) {
+  Panel panel = empty_panel(info, file_part(measure));
+  panel.y_axis = measure.axis_title();
+  panel.smaller_is_better = measure.better == Better::Smaller;
   panel.note = pairs_note(info);
   PanelCount empty{"empty", {}}, pairs{"pairs", {}}, excluded{"excluded", {}};
-  for (const std::string& method : methods_of(info, measure.of_pose)) {
+  const bool with_bounds = measure.has(kWithBounds);
+  for (const std::string& method : methods_of(info, with_bounds)) {
     PanelSeries series{method, {}};
-    double count = 0;
+    int count = 0;
     for (const std::string& level : panel.levels) {
-      series.values.push_back({summary.number(level, method, measure.column),
-                               summary.number(level, method, measure.column + "_low"),
-                               summary.number(level, method, measure.column + "_high")});
-      count += summary.number(level, method, "empty").value_or(0);
+      const SummaryRow& row = *rows.at({level, method});
+      const SummaryValue value = row.of(measure.name);
+      series.values.push_back({value.value, value.low, value.high});
+      count += row.empty;
     }
     panel.series.push_back(series);
-    empty.cells.push_back(to_text(count));
+    empty.cells.push_back(std::to_string(count));
   }
   for (const std::string& level : panel.levels)
     if (!info.methods.empty()) {
-      pairs.cells.push_back(summary.text(level, info.methods[0], "pairs"));
-      excluded.cells.push_back(summary.text(level, info.methods[0], "excluded"));
+      const SummaryRow& row = *rows.at({level, info.methods[0]});
+      pairs.cells.push_back(std::to_string(row.pairs));
+      excluded.cells.push_back(std::to_string(row.excluded));
     }
   panel.level_counts = {pairs, excluded};
-  if (!measure.of_pose) panel.series_counts = {empty};
+  if (!with_bounds) panel.series_counts = {empty};
   return panel;
 }
 
@@ -127,8 +96,8 @@ std::map<std::string, std::vector<const StudyRecord*>> counted_records(const Run
                                                                        const ExperimentInfo& info) {
   std::map<std::string, std::vector<const StudyRecord*>> counted;
   for (const StudyRecord& record : run.records)
-    if (record.experiment == info.name && record.dataset == info.dataset && record.matches &&
-        record.true_matches.value_or(-1) >= info.least_true_matches)
+    if (record.experiment == info.name && record.dataset == info.dataset &&
+        role_of(record, info.least_true_matches) == PairRole::Judged)
       counted[record.method].push_back(&record);
   return counted;
 }
@@ -163,7 +132,9 @@ void add_distributions(const RunFolder& run, const ExperimentInfo& info, StudyFi
 Panel time_panel(const RunFolder& run, const ExperimentInfo& info) {
   Panel panel = empty_panel(info, "time");
   panel.axes = PanelAxes::Logarithmic;
-  panel.y_axis = "time (ms)";
+  const Measure& time = measure("time_ms");
+  panel.y_axis = time.title + " (" + time.unit + ")";
+  panel.smaller_is_better = time.better == Better::Smaller;
   panel.note = "Median wall time of the grouping alone, one thread.";
   std::map<std::pair<std::string, std::string>, std::vector<std::optional<double>>> times;
   for (const StudyRecord& record : run.records)
@@ -191,30 +162,26 @@ std::string file_name_part(const std::string& text) {
   return part;
 }
 
-StudyFigures study_figures(const std::vector<RunFolder>& runs) {
+StudyFigures study_figures(const std::vector<StudyResults>& studies) {
   StudyFigures figures;
   std::set<std::string> names;
-  for (const RunFolder& run : runs) {
-    const std::string path = (std::filesystem::path(run.folder) / "summary.csv").string();
-    std::optional<CsvTable> table;  // a run that only takes times has none
-    for (const ExperimentInfo& info : run.experiments) {
+  for (const StudyResults& study : studies)
+    for (const ExperimentInfo& info : study.run->experiments) {
       if (!names.insert(empty_panel(info, "").name).second)
-        throw IoError(run.folder, "", "experiment " + info.name + " on " + info.dataset + " stands in another run too");
-      if (info.attribute == "table_size") {
-        Panel panel = time_panel(run, info);
+        throw IoError(study.run->folder, "",
+                      "experiment " + info.name + " on " + info.dataset + " stands in another run too");
+      if (is_of_times(info)) {
+        Panel panel = time_panel(*study.run, info);
         if (keep_drawn(panel)) figures.panels.push_back(panel);
         continue;
       }
-      if (!table) table = read_csv(path);
-      const Summary summary(path, *table, info);
-      for (const Measure& measure : kMeasures) {
-        if (!summary.has(measure.column)) continue;
-        Panel panel = level_panel(info, summary, measure);
+      const SummaryRows rows = rows_of(study, info);
+      for (const Measure* measure : measures_with(kFigure)) {
+        Panel panel = level_panel(info, rows, *measure);
         if (keep_drawn(panel)) figures.panels.push_back(panel);
       }
-      add_distributions(run, info, figures);
+      add_distributions(*study.run, info, figures);
     }
-  }
   return figures;
 }
 

@@ -6,7 +6,7 @@
 
 #include "apps/report/figure/box_panel.h"
 #include "apps/report/figure/panel.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_results.h"
 
 namespace corral {
 
@@ -16,14 +16,13 @@ struct StudyFigures {
   std::vector<BoxPanel> boxes;
 };
 
-/// For every experiment: a panel over its levels for each of precision, recall, F1 and the success of the alignments
-/// (initial, refined, dense) that has any value; the curve of success over thresholds and the distribution of mean errors,
-/// refined; and the time, where tables of chosen sizes were timed. Means are those of each run's summary.csv, with
-/// intervals where it has columns such as precision_low and precision_high; no average is taken here. Names are
+/// For every experiment: a panel over its levels for each measure that is drawn (kFigure) and has any value, with its
+/// intervals; the curve of success over thresholds and the distribution of mean errors, refined; and the time, where tables
+/// of chosen sizes were timed. Means are those of the summary; no average is taken here. Names are
 /// <experiment>-<dataset>-<measure>.
 ///
-/// Throws    IoError: a summary that is missing or wrong, or two runs with one experiment on one data set.
-StudyFigures study_figures(const std::vector<RunFolder>& runs);
+/// Throws    IoError: two runs with one experiment on one data set.
+StudyFigures study_figures(const std::vector<StudyResults>& studies);
 
 /// Text as a part of a file name: what is no letter, digit or one of . _ + becomes an underscore.
 std::string file_name_part(const std::string& text);

@@ -21,12 +21,12 @@ std::vector<double> present(const RowNumbers& column) {
   return numbers;
 }
 
-std::vector<std::string> methods_with_numbers(const ExperimentTable& table, Metric metric) {
+std::vector<std::string> methods_with_numbers(const ExperimentTable& table, const Measure& measure) {
   std::vector<std::string> methods;
   for (const std::string& method : table.info.methods) {
     const auto has_numbers = [&](const LevelTable& level) {
-      const auto found = level.methods.find(method);
-      return found != level.methods.end() && !present(metric_column(found->second, metric)).empty();
+      const RowNumbers* column = level.column(measure, method);
+      return column && present_in(*column) > 0;
     };
     if (std::any_of(table.levels.begin(), table.levels.end(), has_numbers)) methods.push_back(method);
   }
@@ -34,14 +34,13 @@ std::vector<std::string> methods_with_numbers(const ExperimentTable& table, Metr
 }
 
 /// The mean number of each pair over the levels where it has one.
-std::map<std::string, double> means_of_pairs(const ExperimentTable& table, const std::string& method, Metric metric) {
+std::map<std::string, double> means_of_pairs(const ExperimentTable& table, const std::string& method,
+                                             const Measure& measure) {
   std::map<std::string, std::vector<double>> numbers;
   for (const LevelTable& level : table.levels) {
-    const auto found = level.methods.find(method);
-    if (found == level.methods.end()) continue;
-    const RowNumbers& column = metric_column(found->second, metric);
-    for (std::size_t row = 0; row < column.size(); ++row)
-      if (!std::isnan(column[row])) numbers[level.pairs[row]].push_back(column[row]);
+    const RowNumbers* column = level.column(measure, method);
+    for (std::size_t row = 0; column && row < column->size(); ++row)
+      if (!std::isnan((*column)[row])) numbers[level.pairs[row]].push_back((*column)[row]);
   }
   std::map<std::string, double> means;
   for (const auto& [pair, values] : numbers) means[pair] = mean_of(values);
@@ -50,9 +49,9 @@ std::map<std::string, double> means_of_pairs(const ExperimentTable& table, const
 
 /// scores[method][pair] on the pairs that all methods have.
 std::vector<std::vector<double>> common_scores(const ExperimentTable& table, const std::vector<std::string>& methods,
-                                               Metric metric) {
+                                               const Measure& measure) {
   std::vector<std::map<std::string, double>> means;
-  for (const std::string& method : methods) means.push_back(means_of_pairs(table, method, metric));
+  for (const std::string& method : methods) means.push_back(means_of_pairs(table, method, measure));
   std::vector<std::vector<double>> scores(methods.size());
   if (means.empty()) return scores;
   for (const auto& [pair, number] : means.front()) {
@@ -68,7 +67,7 @@ std::uint64_t seed_of(const std::string& experiment, const std::string& what) {
 }
 
 std::vector<MethodPair> test_pairs(const MethodComparison& comparison, const std::vector<std::vector<double>>& scores,
-                                   Metric metric) {
+                                   const Measure& measure) {
   std::vector<MethodPair> tests;
   std::vector<double> p;
   for (std::size_t a = 0; a < scores.size(); ++a)
@@ -77,7 +76,7 @@ std::vector<MethodPair> test_pairs(const MethodComparison& comparison, const std
       std::vector<double> differences;
       for (std::size_t i = 0; i < scores[a].size(); ++i) differences.push_back(scores[a][i] - scores[b][i]);
       test.difference = bootstrap_mean(differences, seed_of(comparison.experiment, test.first + " - " + test.second));
-      if (metric == Metric::Success) {
+      if (measure.has(kYesOrNo)) {
         const auto above = std::count_if(differences.begin(), differences.end(), [](double d) { return d > 0; });
         const auto below = std::count_if(differences.begin(), differences.end(), [](double d) { return d < 0; });
         test.p = mcnemar(static_cast<int>(above), static_cast<int>(below)).exact_p;
@@ -95,64 +94,57 @@ std::vector<MethodPair> test_pairs(const MethodComparison& comparison, const std
 }
 
 std::vector<LevelMean> level_means(const ExperimentTable& table, const std::vector<std::string>& methods,
-                                   Metric metric) {
+                                   const Measure& measure) {
   std::vector<LevelMean> means;
   for (const LevelTable& level : table.levels)
     for (const std::string& method : methods)
-      if (const auto mean = level_mean(table.info.name, level, method, metric))
-        means.push_back(
-            {level.level.label, method, present_in(metric_column(level.methods.at(method), metric)), *mean});
+      if (const auto mean = level_mean(table.info.name, level, method, measure))
+        means.push_back({level.level.label, method, present_in(*level.column(measure, method)), *mean});
   return means;
 }
 
 }  // namespace
 
-const std::vector<std::string>& metric_names() {
-  static const std::vector<std::string> names = {"f1", "precision", "recall", "success"};
+std::vector<std::string> metric_names() {
+  std::vector<std::string> names;
+  for (const Measure* measure : measures_with(kHeadline)) names.push_back(measure->word());
+  std::sort(names.begin(), names.end());
   return names;
 }
 
-Metric metric_of(const std::string& name) {
-  const auto found = std::find(metric_names().begin(), metric_names().end(), name);
-  if (found == metric_names().end())
-    throw InvalidInput("comparison", "metric", name, "f1, precision, recall or success");
-  return static_cast<Metric>(found - metric_names().begin());
-}
-
-const RowNumbers& metric_column(const MethodColumns& columns, Metric metric) {
-  switch (metric) {
-    case Metric::Precision:
-      return columns.precision;
-    case Metric::Recall:
-      return columns.recall;
-    case Metric::Success:
-      return columns.success;
-    default:
-      return columns.f1;
+const Measure& metric_of(const std::string& name) {
+  std::string accepted;
+  for (const Measure* measure : measures_with(kHeadline)) {
+    if (measure->word() == name) return *measure;
+    accepted += (accepted.empty() ? "" : ", ") + measure->word();
   }
+  throw InvalidInput("comparison", "metric", name, "one of " + accepted);
 }
 
 std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
-                                       const std::string& method, Metric metric) {
-  const auto found = level.methods.find(method);
-  if (found == level.methods.end()) return std::nullopt;
-  const std::vector<double> numbers = present(metric_column(found->second, metric));
-  if (numbers.empty()) return std::nullopt;
+                                       const std::string& method, const Measure& measure) {
+  const RowNumbers* column = level.column(measure, method);
+  if (!column || present_in(*column) == 0) return std::nullopt;
+  const std::vector<double> numbers = present(*column);
   return bootstrap_mean(numbers, seed_of(experiment, level.level.label + " " + method));
 }
 
-MethodComparison compare_methods(const ExperimentTable& table, Metric metric) {
+MethodComparison compare_methods(const ExperimentTable& table, const Measure& measure) {
   MethodComparison comparison;
   comparison.experiment = table.info.name;
-  comparison.methods = methods_with_numbers(table, metric);
-  comparison.levels = level_means(table, comparison.methods, metric);
-  const std::vector<std::vector<double>> scores = common_scores(table, comparison.methods, metric);
+  comparison.methods = methods_with_numbers(table, measure);
+  comparison.levels = level_means(table, comparison.methods, measure);
+  const std::vector<std::vector<double>> scores = common_scores(table, comparison.methods, measure);
   if (scores.size() < 2 || scores.front().empty()) return comparison;
   comparison.pairs = static_cast<int>(scores.front().size());
   for (std::size_t i = 0; i < scores.size(); ++i)
     comparison.means.push_back(bootstrap_mean(scores[i], seed_of(table.info.name, comparison.methods[i])));
-  comparison.ranks = compare_ranks(scores);
-  comparison.tests = test_pairs(comparison, scores, metric);
+  std::vector<std::vector<double>> goodness = scores;
+  if (measure.better == Better::Smaller)
+    for (std::vector<double>& of_method : goodness)
+      for (double& score : of_method) score = -score;
+  comparison.ranks = compare_ranks(goodness);
+  comparison.tests = test_pairs(comparison, scores, measure);
   return comparison;
 }
 

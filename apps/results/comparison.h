@@ -10,13 +10,9 @@
 
 namespace corral {
 
-/// What methods are compared by.
-enum class Metric { F1, Precision, Recall, Success };
-const std::vector<std::string>& metric_names();  ///< in this order
-Metric metric_of(const std::string& name);       ///< throws InvalidInput
-
-/// The numbers of a method at a level.
-const RowNumbers& metric_column(const MethodColumns& columns, Metric metric);
+/// What methods are compared by: the words of the headline measures, in alphabetic order.
+std::vector<std::string> metric_names();
+const Measure& metric_of(const std::string& name);  ///< throws InvalidInput
 
 /// Two methods on the same pairs.
 struct MethodPair {
@@ -30,7 +26,7 @@ struct MethodPair {
 /// The mean of a method at a level, over all pairs that count there; absent without any. Deterministic: its interval
 /// depends on the numbers and on the names of experiment, level and method.
 std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
-                                       const std::string& method, Metric metric);
+                                       const std::string& method, const Measure& measure);
 
 /// A method at a level.
 struct LevelMean {
@@ -52,6 +48,6 @@ struct MethodComparison {
 
 /// Compares on the pairs that count, over all levels; a pair that stands at several levels is one, by the mean of its numbers.
 /// Deterministic. Nothing but the levels is filled with fewer than 2 methods or without a common pair.
-MethodComparison compare_methods(const ExperimentTable& table, Metric metric);
+MethodComparison compare_methods(const ExperimentTable& table, const Measure& measure);
 
 }  // namespace corral

@@ -5,24 +5,17 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numeric>
+#include <set>
 #include <tuple>
 
-#include "apps/pair/evaluate_pair.h"
 #include "apps/results/statistics.h"
 #include "io/line_reader.h"
 #include "kernel/error.h"
-#include "kernel/evaluation.h"
 
 namespace corral {
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
-template <class Value>
-double number(const std::optional<Value>& value) {
-  return value ? static_cast<double>(*value) : kAbsent;
-}
 
 /// A record and where it belongs.
 struct Place {
@@ -62,6 +55,7 @@ Layout lay_out(const RunFolder& run) {
     for (const StudyLevel& level : info.levels) {
       levels[{info.name, level.label}] = {layout.tables.size() - 1, table.levels.size()};
       table.levels.emplace_back().level = level;
+      for (const Measure* measure : measures_with(kOfPair)) table.levels.back().of_pairs[measure->name];
     }
   }
   RowKeys keys;
@@ -79,9 +73,9 @@ Layout lay_out(const RunFolder& run) {
     if (is_new) {
       level.pairs.push_back(record.pair);
       level.selections.emplace_back();
-      for (RowNumbers* column :
-           {&level.value, &level.matches, &level.true_matches, &level.inlier_ratio, &level.frame_share})
-        column->push_back(kAbsent);
+      level.roles.push_back(role_of(record, layout.tables[experiment].info.least_true_matches));
+      level.value.push_back(kAbsent);
+      for (auto& [name, column] : level.of_pairs) column.push_back(kAbsent);
     }
     layout.places.push_back({&record, experiment, level_index, row->second});
   }
@@ -90,84 +84,46 @@ Layout lay_out(const RunFolder& run) {
 
 /// What all methods share.
 void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record) {
-  const auto fill = [&](RowNumbers& column, double value) {
-    if (!std::isnan(value)) column[row] = value;
-  };
   if (!record.selection.empty()) level.selections[row] = record.selection;
-  fill(level.value, number(record.value));
-  fill(level.matches, number(record.matches));
-  fill(level.true_matches, number(record.true_matches));
-  fill(level.frame_share, number(record.frame_share));
-  if (record.matches && record.true_matches && *record.matches > 0)
-    fill(level.inlier_ratio, number(record.true_matches) / number(record.matches));
+  if (record.value) level.value[row] = *record.value;
+  for (const Measure* measure : measures_with(kOfPair))
+    if (const auto number = measure->of(record)) level.of_pairs[measure->name][row] = *number;
 }
-
-void count_rows(LevelTable& level, int least_true_matches) {
-  for (std::size_t row = 0; row < level.pairs.size(); ++row) {
-    const bool failed = std::isnan(level.matches[row]);
-    const bool excluded = !failed && !(level.true_matches[row] >= std::max(1, least_true_matches));
-    level.failed += failed;
-    level.excluded += excluded;
-    level.counts.push_back(!failed && !excluded);
-  }
-}
-
-double success_of(const PoseScores& scores) {
-  return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
-}
-
-double error_of(const std::optional<double>& error) { return error.value_or(std::numeric_limits<double>::infinity()); }
-
-/// A column and the number that a record has for it.
-struct Column {
-  RowNumbers MethodColumns::*column;
-  double (*number)(const StudyRecord& record);
-};
-
-const std::vector<Column> kColumns = {
-    {&MethodColumns::precision, [](const StudyRecord& record) { return record.precision.value_or(0); }},
-    {&MethodColumns::recall, [](const StudyRecord& record) { return record.recall.value_or(0); }},
-    {&MethodColumns::f1, [](const StudyRecord& record) { return record.f1.value_or(0); }},
-    {&MethodColumns::nonempty_precision, [](const StudyRecord& record) { return number(record.precision); }},
-    {&MethodColumns::selected, [](const StudyRecord& record) { return 1.0 * record.selected.value_or(0); }},
-    {&MethodColumns::correct, [](const StudyRecord& record) { return 1.0 * record.correct.value_or(0); }},
-    {&MethodColumns::success, [](const StudyRecord& record) { return success_of(record.refined); }},
-    {&MethodColumns::initial_success, [](const StudyRecord& record) { return success_of(record.initial); }},
-    {&MethodColumns::dense_success, [](const StudyRecord& record) { return success_of(record.dense); }},
-    {&MethodColumns::success_area,
-     [](const StudyRecord& record) { return success_area({record.refined.mean_error_pr}); }},
-    {&MethodColumns::rotation_error_deg,
-     [](const StudyRecord& record) { return error_of(record.refined.rotation_error_deg); }},
-    {&MethodColumns::translation_error_pr,
-     [](const StudyRecord& record) { return error_of(record.refined.translation_error_pr); }},
-    {&MethodColumns::mean_error_pr, [](const StudyRecord& record) { return error_of(record.refined.mean_error_pr); }},
-    {&MethodColumns::time_ms, [](const StudyRecord& record) { return number(record.time_ms); }}};
 
 /// The records of a method at a level: of each row its repeats.
 using MethodRecords = std::vector<std::vector<const StudyRecord*>>;
 
-MethodColumns columns_of(const LevelTable& level, const MethodRecords& records) {
+MethodColumns columns_of(const LevelTable& level, const MethodRecords& records, const std::set<std::string>& untried) {
   MethodColumns columns;
-  for (std::size_t row = 0; row < records.size(); ++row) {
-    const std::vector<const StudyRecord*>& repeats = records[row];
-    const bool counts = level.counts[row] != 0;
-    for (const Column& column : kColumns) {
+  for (const Measure& measure : measures()) {
+    if (measure.has(kOfPair)) continue;
+    RowNumbers& column = columns.numbers[measure.name];
+    for (std::size_t row = 0; row < level.pairs.size(); ++row) {
       RowNumbers numbers;
-      if (counts || column.column == &MethodColumns::time_ms)
-        for (const StudyRecord* record : repeats) numbers.push_back(column.number(*record));
-      (columns.*column.column).push_back(mean_of(numbers));
+      if (untried.count(measure.name) == 0)
+        for (const StudyRecord* record : records[row])
+          numbers.push_back(counted_number(measure, *record, level.roles[row]));
+      column.push_back(mean_of(numbers));
     }
-    const auto any = [&](const auto& is) { return counts && std::any_of(repeats.begin(), repeats.end(), is); };
-    columns.empty += any([](const StudyRecord* record) { return record->selected == 0; });
-    columns.failed += any([](const StudyRecord* record) { return !record->selected; });
+  }
+  for (std::size_t row = 0; row < records.size(); ++row) {
+    const bool is_judged = level.roles[row] == PairRole::Judged,
+               is_in = is_judged || level.roles[row] == PairRole::Unjudged;
+    const auto any = [&](const auto& is) { return std::any_of(records[row].begin(), records[row].end(), is); };
+    columns.empty += is_judged && any([](const StudyRecord* record) { return record->selected == 0; });
+    columns.failed += is_in && any([](const StudyRecord* record) { return !record->selected; });
   }
   return columns;
 }
 
-/// Where no surface was laid on the other, that is no failure to do so.
-void drop_dense(ExperimentTable& table) {
-  for (LevelTable& level : table.levels)
-    for (auto& [method, columns] : level.methods) columns.dense_success.assign(level.pairs.size(), kAbsent);
+/// Of so many numbers, but for those that are none.
+template <class Number>
+double mean_over(std::size_t count, const Number& number) {
+  double sum = 0;
+  int seen = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const double value = number(i); !std::isnan(value)) sum += value, ++seen;
+  return seen > 0 ? sum / seen : kAbsent;
 }
 
 double jaccard(const Indices& a, const Indices& b) {
@@ -188,7 +144,13 @@ double agreement(const PairSelections& selections, const std::vector<std::string
 
 }  // namespace
 
-int LevelTable::counted() const { return std::accumulate(counts.begin(), counts.end(), 0); }
+int LevelTable::count(PairRole role) const { return static_cast<int>(std::count(roles.begin(), roles.end(), role)); }
+
+const RowNumbers* LevelTable::column(const Measure& measure, const std::string& method) const {
+  if (measure.has(kOfPair)) return &of_pairs.at(measure.name);
+  const auto found = methods.find(method);
+  return found == methods.end() ? nullptr : &found->second.numbers.at(measure.name);
+}
 
 std::vector<ExperimentTable> experiment_tables(const RunFolder& run) {
   Layout layout = lay_out(run);
@@ -196,46 +158,31 @@ std::vector<ExperimentTable> experiment_tables(const RunFolder& run) {
     return layout.tables[place.experiment].levels[place.level];
   };
   for (const Place& place : layout.places) fill_row(level_of(place), place.row, *place.record);
-  std::vector<bool> has_dense(layout.tables.size(), false);
+  std::set<std::string> if_tried;
+  for (const Measure* measure : measures_with(kIfTried)) if_tried.insert(measure->name);
+  std::vector<std::set<std::string>> untried(layout.tables.size(), if_tried);
   std::map<std::tuple<std::size_t, std::size_t, std::string>, MethodRecords> cells;
   for (const Place& place : layout.places) {
     MethodRecords& rows = cells[{place.experiment, place.level, place.record->method}];
     rows.resize(level_of(place).pairs.size());
     rows[place.row].push_back(place.record);
-    if (place.record->dense.rotation_error_deg) has_dense[place.experiment] = true;
+    for (const std::string& name : if_tried)
+      if (measure(name).of(*place.record)) untried[place.experiment].erase(name);
   }
-  for (ExperimentTable& table : layout.tables)
-    for (LevelTable& level : table.levels) count_rows(level, table.info.least_true_matches);
   for (const auto& [key, records] : cells) {
-    LevelTable& level = layout.tables[std::get<0>(key)].levels[std::get<1>(key)];
-    level.methods[std::get<2>(key)] = columns_of(level, records);
+    const auto& [experiment, level_index, method] = key;
+    LevelTable& level = layout.tables[experiment].levels[level_index];
+    level.methods[method] = columns_of(level, records, untried[experiment]);
   }
-  for (std::size_t i = 0; i < layout.tables.size(); ++i)
-    if (!has_dense[i]) drop_dense(layout.tables[i]);
   return std::move(layout.tables);
 }
 
 double mean_of(const RowNumbers& column) {
-  double sum = 0;
-  int seen = 0;
-  for (const double value : column) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++seen;
-  }
-  return seen > 0 ? sum / seen : kAbsent;
+  return mean_over(column.size(), [&](std::size_t i) { return column[i]; });
 }
 
 double mean_of(const RowNumbers& column, const std::vector<int>& rows) {
-  double sum = 0;
-  int seen = 0;
-  for (const int row : rows) {
-    const double value = column[static_cast<std::size_t>(row)];
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++seen;
-  }
-  return seen > 0 ? sum / seen : kAbsent;
+  return mean_over(rows.size(), [&](std::size_t i) { return column[static_cast<std::size_t>(rows[i])]; });
 }
 
 int present_in(const RowNumbers& column) {
@@ -251,28 +198,6 @@ double median_of(RowNumbers values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }),
                values.end());
   return quantile_of(std::move(values), 0.5);
-}
-
-double pooled_precision(const LevelTable& level, const std::string& method) {
-  const MethodColumns& columns = level.methods.at(method);
-  double correct = 0, selected = 0;
-  for (std::size_t row = 0; row < level.pairs.size(); ++row) {
-    if (std::isnan(columns.selected[row])) continue;
-    correct += columns.correct[row];
-    selected += columns.selected[row];
-  }
-  return selected > 0 ? correct / selected : kAbsent;
-}
-
-double pooled_recall(const LevelTable& level, const std::string& method) {
-  const MethodColumns& columns = level.methods.at(method);
-  double correct = 0, true_matches = 0;
-  for (std::size_t row = 0; row < level.pairs.size(); ++row) {
-    if (std::isnan(columns.correct[row])) continue;
-    correct += columns.correct[row];
-    true_matches += level.true_matches[row];
-  }
-  return true_matches > 0 ? correct / true_matches : kAbsent;
 }
 
 std::vector<RowNumbers> selection_agreement(const RunFolder& run, const ExperimentTable& table,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/results/measures.h"
 #include "apps/results/run_folder.h"
 
 namespace corral {
@@ -12,38 +13,29 @@ namespace corral {
 /// One number for each row of a level; NaN where there is none, which every mean passes over.
 using RowNumbers = std::vector<double>;
 
-/// What a method made of the rows of a level, each the mean over its repeats. Rows that do not count have no number but a
-/// time. Errors are infinite where there is no pose (in any repeat): for medians, which take it for the worst.
+/// What a method made of the rows of a level, each the mean over its repeats, by the name of the measure.
 struct MethodColumns {
-  RowNumbers precision, recall, f1;  ///< 0 where nothing was selected, or the method gave no answer
-  RowNumbers nonempty_precision;     ///< none where nothing was selected
-  RowNumbers selected, correct;      ///< 0 where the method gave no answer
-  RowNumbers success;                ///< 1 if the refined pose has a mean error of at most 5 pr; no pose has not
-  RowNumbers initial_success;        ///< the same of the pose before the refinement
-  RowNumbers dense_success;          ///< and of the dense one; none unless the experiment has dense poses
-  RowNumbers success_area;           ///< under the curve of success of the refined pose, 0 .. 5 pr
-  RowNumbers rotation_error_deg, translation_error_pr, mean_error_pr;  ///< refined
-  RowNumbers time_ms;                                                  ///< of the grouping alone
-  int empty = 0;   ///< rows that count where a repeat selected nothing
-  int failed = 0;  ///< rows that count where a repeat gave no answer
+  std::map<std::string, RowNumbers> numbers;  ///< as counted_number says
+  int empty = 0;                              ///< judged rows where a repeat selected nothing
+  int failed = 0;  ///< rows where a repeat gave no answer, but for those of excluded and failed pairs
 };
 
 /// A level of an experiment: a row for each pair (for each table of it that the level has: one pair may give several).
 struct LevelTable {
   StudyLevel level;
-  std::vector<std::string> pairs;                               ///< of each row, in the order of the records
-  std::vector<std::string> selections;                          ///< file below the run's folder, or empty
-  RowNumbers value;                                             ///< of the swept attribute
-  RowNumbers matches, true_matches, inlier_ratio, frame_share;  ///< of excluded rows too
-  std::vector<char> counts;                                     ///< 1 unless the row is excluded or failed
-  int excluded = 0;  ///< too few true matches, or no truth to know them by; for all methods alike
-  int failed = 0;    ///< pairs that could not be matched
+  std::vector<std::string> pairs;              ///< of each row, in the order of the records
+  std::vector<std::string> selections;         ///< file below the run's folder, or empty
+  std::vector<PairRole> roles;                 ///< of each row, for all methods alike
+  RowNumbers value;                            ///< of the swept attribute
+  std::map<std::string, RowNumbers> of_pairs;  ///< measures that are the same for every method; of excluded rows too
   std::map<std::string, MethodColumns> methods;
 
-  int counted() const;
+  int count(PairRole role) const;
+  /// The column of a measure, of the pairs or else of the method. Null if it is not there.
+  const RowNumbers* column(const Measure& measure, const std::string& method) const;
 };
 
-/// The numbers of an experiment, ready to be averaged. Means, pooled sums and counts are all to be taken from here.
+/// The numbers of an experiment, ready to be averaged.
 struct ExperimentTable {
   ExperimentInfo info;
   std::vector<LevelTable> levels;
@@ -62,10 +54,6 @@ double median_of(RowNumbers values);       ///< likewise
 
 /// Whether a level lies in low .. high, ends included; levels are decimal numbers, so ends may be off by their rounding.
 bool is_within(const StudyLevel& level, double low, double high);
-
-/// Pooled over the rows that count (micro): all that is right among all that was selected, or among all true matches.
-double pooled_precision(const LevelTable& level, const std::string& method);
-double pooled_recall(const LevelTable& level, const std::string& method);
 
 /// For each row, how alike the methods' selections are: the mean Jaccard index over pairs of methods, two empty ones left
 /// out. Reads the files of selections that the records name; NaN where there is none (a run may be kept without them).

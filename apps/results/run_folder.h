@@ -35,8 +35,8 @@ struct ExperimentInfo {
 
 /// Where the surfaces of a run's pairs are.
 struct StudyPair {
-  std::string source, target, truth;                   ///< files; the truth may be empty
-  double resolution = 0;                               ///< mesh units per pr that the pair was judged with
+  std::string source, target, truth;                             ///< files; the truth may be empty
+  double resolution = 0;                                         ///< mesh units per pr that the pair was judged with
   std::optional<int> source_points = {}, source_keypoints = {};  ///< of the source's surface, where the run says it
 };
 

@@ -2,8 +2,8 @@
 #include "apps/results/study_record.h"
 
 #include <cmath>
-#include <set>
 
+#include "apps/results/measures.h"
 #include "io/csv_file.h"
 #include "io/line_reader.h"
 #include "kernel/error.h"
@@ -11,6 +11,15 @@
 
 namespace corral {
 namespace {
+
+/// Calls visit(name, field) for what a measure has stored in a record.
+template <class Record, class Visitor>
+void visit_stored(const Measure& measure, Record& record, Visitor& visit) {
+  const Stored& stored = measure.stored;
+  if (stored.count) visit(measure.name, record.*stored.count);
+  if (stored.number) visit(measure.name, record.*stored.number);
+  if (stored.pose) visit(measure.name, record.*stored.pose.*stored.score);
+}
 
 /// Calls visit(name, field) for every column of a record, in order: the one list that writing and reading follow.
 template <class Record, class Visitor>
@@ -23,29 +32,12 @@ void visit_columns(Record& record, Visitor&& visit) {
   visit("repeat", record.repeat);
   visit("value", record.value);
   visit("status", record.status);
-  visit("matches", record.matches);
-  visit("true_matches", record.true_matches);
-  visit("selected", record.selected);
-  visit("correct", record.correct);
-  visit("precision", record.precision);
-  visit("recall", record.recall);
-  visit("f1", record.f1);
-  visit("frame_share", record.frame_share);
-  const auto visit_pose = [&](const std::string& pose, auto& scores) {
-    visit(pose + "_rotation_error_deg", scores.rotation_error_deg);
-    visit(pose + "_translation_error_pr", scores.translation_error_pr);
-    visit(pose + "_mean_error_pr", scores.mean_error_pr);
-    visit(pose + "_rmse_pr", scores.rmse_pr);
-    visit(pose + "_add_share", scores.add_share);
-  };
-  visit_pose("initial", record.initial);
-  visit_pose("refined", record.refined);
-  visit_pose("dense", record.dense);
-  visit("time_ms", record.time_ms);
+  for (const Measure& measure : measures()) visit_stored(measure, record, visit);
   visit("selection", record.selection);
 }
 
 std::string cell_text(const std::string& value) { return value; }
+std::string cell_text(const MethodStatus& value) { return to_text(value); }
 std::string cell_text(int value) { return std::to_string(value); }
 std::string cell_text(double value) { return to_text(value); }
 template <class Value>
@@ -56,6 +48,11 @@ std::string cell_text(const std::optional<Value>& value) {
 bool parse_cell(const std::string& cell, std::string& value) {
   value = cell;
   return true;
+}
+bool parse_cell(const std::string& cell, MethodStatus& value) {
+  const auto status = parse_status(cell);
+  if (status) value = *status;
+  return status.has_value();
 }
 bool parse_cell(const std::string& cell, int& value) {
   const auto number = parse_int(cell);
@@ -78,15 +75,13 @@ bool parse_cell(const std::string& cell, std::optional<Value>& value) {
   return true;
 }
 
-/// Shares of a whole are from 0 to 1 (ADD is a length in diameters), and nothing else that is measured is below zero; the
-/// value is that of any attribute.
+/// The value is that of any attribute.
 template <class Value>
 bool is_in_range(const std::string&, const Value&) {
   return true;
 }
 bool is_in_range(const std::string& name, const std::optional<double>& value) {
-  static const std::set<std::string> shares = {"precision", "recall", "f1", "frame_share"};
-  return !value || name == "value" || (*value >= 0 && (shares.count(name) == 0 || *value <= 1));
+  return !value || name == "value" || (*value >= 0 && *value <= measure(name).largest);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/pair/method_status.h"
+
 namespace corral {
 
 /// A pose against the truth; what could not be had is absent.
@@ -21,7 +23,7 @@ struct StudyRecord {
   std::string experiment, dataset, level, pair, method;
   int repeat = 0;               ///< from 0
   std::optional<double> value;  ///< of the swept attribute
-  std::string status;           ///< that of MethodRecord; "failed: ..." with the cause if the pair could not be matched
+  MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< of the right matches, those whose frames agree within 10 degrees

@@ -11,103 +11,81 @@
 namespace corral {
 namespace {
 
-std::optional<double> finite(double value) {
-  return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+/// Over the rows that have both: all of one measure among all of another.
+double pooled(const LevelTable& level, const std::string& method, const Measure& measure) {
+  const RowNumbers& part = *level.column(corral::measure(measure.pooled_of.first), method);
+  const RowNumbers& whole = *level.column(corral::measure(measure.pooled_of.second), method);
+  double sum = 0, of = 0;
+  for (std::size_t row = 0; row < part.size(); ++row) {
+    if (std::isnan(part[row]) || std::isnan(whole[row])) continue;
+    sum += part[row];
+    of += whole[row];
+  }
+  return of > 0 ? sum / of : kAbsent;
 }
 
-/// Of the rows that count.
-std::optional<double> counted_mean(const LevelTable& level, RowNumbers column) {
+/// Of the pairs themselves: over the rows that count.
+double judged_mean(const LevelTable& level, RowNumbers column) {
   for (std::size_t row = 0; row < column.size(); ++row)
-    if (!level.counts[row]) column[row] = std::numeric_limits<double>::quiet_NaN();
-  return finite(mean_of(column));
+    if (level.roles[row] != PairRole::Judged) column[row] = kAbsent;
+  return mean_of(column);
+}
+
+double average(const LevelTable& level, const std::string& method, const Measure& measure) {
+  if (measure.average == Average::Pooled) return pooled(level, method, measure);
+  const RowNumbers& column = *level.column(measure, method);
+  if (measure.average == Average::Median) return median_of(column);
+  return measure.has(kOfPair) ? judged_mean(level, column) : mean_of(column);
+}
+
+SummaryValue value_of(const std::string& experiment, const LevelTable& level, const std::string& method,
+                      const Measure& measure) {
+  if (measure.has(kHeadline)) {
+    const auto mean = level_mean(experiment, level, method, measure);
+    return mean ? SummaryValue{mean->mean, mean->low, mean->high} : SummaryValue();
+  }
+  const double number = average(level, method, measure);
+  return {std::isfinite(number) ? std::optional<double>(number) : std::nullopt, {}, {}};  // a median may be no pose
 }
 
 SummaryRow row_of(const ExperimentInfo& info, const LevelTable& level, const std::string& method) {
   SummaryRow row;
   row.experiment = info.name, row.dataset = info.dataset, row.level = level.level.label, row.method = method;
-  row.excluded = level.excluded;
-  row.failed = level.failed;
+  row.excluded = level.count(PairRole::Excluded);
+  row.failed = level.count(PairRole::Failed);
   const auto found = level.methods.find(method);
   if (found == level.methods.end()) return row;
-  const MethodColumns& columns = found->second;
-  row.pairs = present_in(columns.precision);
-  row.empty = columns.empty;
-  row.failed += columns.failed;
-  const auto mean = [&](Metric metric) { return level_mean(info.name, level, method, metric); };
-  row.precision = mean(Metric::Precision);
-  row.recall = mean(Metric::Recall);
-  row.f1 = mean(Metric::F1);
-  row.success = mean(Metric::Success);
-  row.pooled_precision = finite(pooled_precision(level, method));
-  row.pooled_recall = finite(pooled_recall(level, method));
-  row.precision_nonempty = finite(mean_of(columns.nonempty_precision));
-  row.inlier_ratio = counted_mean(level, level.inlier_ratio);
-  row.frame_share = counted_mean(level, level.frame_share);
-  row.rotation_error_deg = finite(median_of(columns.rotation_error_deg));
-  row.translation_error_pr = finite(median_of(columns.translation_error_pr));
-  row.mean_error_pr = finite(median_of(columns.mean_error_pr));
-  row.success_area = finite(mean_of(columns.success_area));
-  row.initial_success = finite(mean_of(columns.initial_success));
-  row.dense_success = finite(mean_of(columns.dense_success));
+  row.pairs = present_in(found->second.numbers.at("precision"));
+  row.empty = found->second.empty;
+  row.failed += found->second.failed;
+  for (const Measure& measure : measures())
+    if (measure.average != Average::None) row.values[measure.name] = value_of(info.name, level, method, measure);
   return row;
 }
 
-const std::vector<std::string> kColumns = {"experiment",
-                                           "dataset",
-                                           "level",
-                                           "method",
-                                           "pairs",
-                                           "excluded",
-                                           "empty",
-                                           "precision",
-                                           "recall",
-                                           "f1",
-                                           "success_5pr",
-                                           "failed",
-                                           "pooled_precision",
-                                           "pooled_recall",
-                                           "precision_nonempty",
-                                           "inlier_ratio",
-                                           "frame_share",
-                                           "refined_rotation_error_deg",
-                                           "refined_translation_error_pr",
-                                           "refined_mean_error_pr",
-                                           "success_area",
-                                           "initial_success_5pr",
-                                           "dense_success_5pr",
-                                           "precision_low",
-                                           "precision_high",
-                                           "recall_low",
-                                           "recall_high",
-                                           "f1_low",
-                                           "f1_high",
-                                           "success_5pr_low",
-                                           "success_5pr_high"};
+}  // namespace
 
-std::string row_text(const SummaryRow& row) {
-  std::vector<std::string> cells = {row.experiment,
-                                    row.dataset,
-                                    row.level,
-                                    row.method,
-                                    std::to_string(row.pairs),
-                                    std::to_string(row.excluded),
-                                    std::to_string(row.empty)};
-  const auto put = [&](const std::optional<double>& value) { cells.push_back(value ? to_text(*value) : ""); };
-  const auto intervals = {&row.precision, &row.recall, &row.f1, &row.success};
-  for (const auto* interval : intervals) cells.push_back(*interval ? to_text((*interval)->mean) : "");
-  cells.push_back(std::to_string(row.failed));
-  for (const auto& value : {row.pooled_precision, row.pooled_recall, row.precision_nonempty, row.inlier_ratio,
-                            row.frame_share, row.rotation_error_deg, row.translation_error_pr, row.mean_error_pr,
-                            row.success_area, row.initial_success, row.dense_success})
-    put(value);
-  for (const auto* interval : intervals) {
-    cells.push_back(*interval ? to_text((*interval)->low) : "");
-    cells.push_back(*interval ? to_text((*interval)->high) : "");
-  }
-  return csv_line(cells);
+SummaryValue SummaryRow::of(const std::string& measure) const {
+  const auto found = values.find(measure);
+  return found == values.end() ? SummaryValue() : found->second;
 }
 
-}  // namespace
+std::vector<SummaryCell> summary_cells(const SummaryRow& row) {
+  std::vector<SummaryCell> cells = {{"pairs", row.pairs, {}}, {"excluded", row.excluded, {}}, {"empty", row.empty, {}}};
+  const std::vector<const Measure*> headline = measures_with(kHeadline);
+  for (const Measure* measure : headline) cells.push_back({measure->name, {}, row.of(measure->name).value});
+  cells.push_back({"failed", row.failed, {}});
+  for (const Measure& measure : measures())
+    if (measure.average != Average::None && !measure.has(kHeadline))
+      cells.push_back({measure.name, {}, row.of(measure.name).value});
+  for (const Measure* measure : headline) {
+    cells.push_back({measure->name + "_low", {}, row.of(measure->name).low});
+    cells.push_back({measure->name + "_high", {}, row.of(measure->name).high});
+  }
+  return cells;
+}
 
 std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables) {
   std::vector<SummaryRow> rows;
@@ -121,8 +99,15 @@ std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables) {
 }
 
 std::string summary_text(const std::vector<SummaryRow>& rows) {
-  std::string text = csv_line(kColumns);
-  for (const SummaryRow& row : rows) text += row_text(row);
+  std::vector<std::string> header = {"experiment", "dataset", "level", "method"};
+  for (const SummaryCell& cell : summary_cells({})) header.push_back(cell.name);
+  std::string text = csv_line(header);
+  for (const SummaryRow& row : rows) {
+    std::vector<std::string> cells = {row.experiment, row.dataset, row.level, row.method};
+    for (const SummaryCell& cell : summary_cells(row))
+      cells.push_back(cell.count ? std::to_string(*cell.count) : cell.value ? to_text(*cell.value) : "");
+    text += csv_line(cells);
+  }
   return text;
 }
 

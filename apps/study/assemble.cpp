@@ -50,7 +50,7 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
   const WorkUnit& unit = list.units[static_cast<std::size_t>(sample.unit)];
   const std::size_t threshold = threshold_of(list, sample);
   StudyRecord common = common_part(list, sample, result);
-  if (!result.failure.empty()) common.status = "failed: " + result.failure;
+  if (!result.failure.empty()) common.status = {MethodState::Failed, result.failure};
   if (result.has_truth) {
     common.true_matches = result.true_matches[threshold];
     common.frame_share = result.frame_share[threshold];

@@ -52,7 +52,7 @@ FeatureCache feature_cache(const UnitWork& work, const std::string& file) {
   };
 }
 
-/// Statuses are cells of a table.
+/// Causes are in cells of a table.
 std::string one_line(std::string text) {
   for (char& letter : text)
     if (letter == '\n' || letter == '\r') letter = ' ';
@@ -151,7 +151,8 @@ class PairStudy {
 
   TaskResult result_of(const MethodRecord& record) const {
     TaskResult result;
-    result.status = one_line(record.status());
+    result.status = record.status();
+    result.status.cause = one_line(result.status.cause);
     result.time_ms = record.time_ms;
     if (!record.failure.empty()) return result;
     result.selected = static_cast<int>(record.found.selected.size());

@@ -15,7 +15,7 @@ namespace corral {
 
 /// How one call of a grouper ended, or what all right matches (the oracle) or all matches (the floor) lead to.
 struct TaskResult {
-  std::string status;           ///< that of MethodRecord
+  MethodStatus status;
   std::optional<int> selected;  ///< absent if there is no answer
   std::vector<int> correct;     ///< at each threshold; empty without a truth
   PoseScores initial, refined, dense;

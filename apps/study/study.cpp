@@ -161,9 +161,9 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   const std::vector<UnitResult> results = Runner(list, inputs, settings, observer).run(settings.jobs);
   RunFolder run{settings.run, {}, {}, assemble_records(list, results)};
   for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
-  StudyOutcome outcome{results.size(),
-                       static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),
-                       summarize(experiment_tables(run))};
+  const StudyOutcome outcome{results.size(),
+                             static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),
+                             summarize(experiment_tables(run))};
   write_files({{(folder / "records.csv").string(), records_text(run.records)},
                {(folder / "summary.csv").string(), summary_text(outcome.summary)},
                {manifest, manifest_text(list, inputs, results, settings.command_line)}});

@@ -7,15 +7,12 @@
 #include <numeric>
 
 #include "apps/pair/read_surface.h"
-#include "apps/results/level_table.h"
-#include "apps/results/statistics.h"
+#include "apps/results/study_results.h"
 #include "apps/runtime/stopwatch.h"
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
 #include "grouping/registry.h"
-#include "io/csv_file.h"
 #include "kernel/error.h"
-#include "kernel/number_text.h"
 #include "kernel/random.h"
 
 namespace corral {
@@ -80,31 +77,6 @@ class Timer {
   std::vector<int> selected_, batch_;
 };
 
-std::vector<TimeRow> time_rows(const Experiment& experiment, const std::vector<StudyRecord>& records) {
-  std::vector<TimeRow> rows;
-  for (const StudyLevel& level : experiment.info.levels)
-    for (const std::string& method : experiment.info.methods) {
-      std::vector<double> times;
-      for (const StudyRecord& record : records)
-        if (record.level == level.label && record.method == method) times.push_back(*record.time_ms);
-      if (times.empty()) continue;
-      const auto runs = static_cast<int>(times.size());
-      rows.push_back({experiment.info.name, experiment.info.dataset, level.label, method, runs, quantile_of(times, 0.5),
-                      mean_of(times), quantile_of(times, 0.25), quantile_of(times, 0.75)});
-    }
-  return rows;
-}
-
-std::string time_text(const std::vector<TimeRow>& rows) {
-  std::string text = csv_line({"experiment", "dataset", "level", "method", "runs", "median_ms", "mean_ms",
-                               "lower_quartile_ms", "upper_quartile_ms"});
-  for (const TimeRow& row : rows)
-    text +=
-        csv_line({row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs), to_text(row.median_ms),
-                  to_text(row.mean_ms), to_text(row.lower_quartile_ms), to_text(row.upper_quartile_ms)});
-  return text;
-}
-
 }  // namespace
 
 CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed) {
@@ -144,7 +116,7 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
           StudyRecord record;
           record.experiment = experiment.info.name, record.dataset = experiment.info.dataset;
           record.level = levels[level].label, record.pair = pair, record.method = timer.name(method);
-          record.repeat = repeat, record.value = count, record.status = "timed", record.matches = count;
+          record.repeat = repeat, record.value = count, record.status = {MethodState::Timed}, record.matches = count;
           record.selected = timer.selected(method), record.time_ms = timer.time_ms(method);
           records.push_back(std::move(record));
         }
@@ -153,7 +125,7 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
     throw IoError(settings.run, "",
                   "no pair has as many matches as the smallest size, expected smaller levels or a smaller radius_pr of "
                   "its detector");
-  const std::vector<TimeRow> rows = time_rows(experiment, records);
+  const std::vector<TimeRow> rows = time_rows(experiment.info, records);
   const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
   write_files({{(folder / "records.csv").string(), records_text(records)},
                {(folder / "time.csv").string(), time_text(rows)},

@@ -5,18 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/results/study_results.h"
 #include "apps/study/study.h"
 #include "apps/study/work_list.h"
 #include "kernel/correspondence_set.h"
 
 namespace corral {
-
-/// Times of one method on tables of one size.
-struct TimeRow {
-  std::string experiment, dataset, level, method;
-  int runs = 0;  ///< timed, over all tables
-  double median_ms = 0, mean_ms = 0, lower_quartile_ms = 0, upper_quartile_ms = 0;
-};
 
 /// Times the groupers of the one experiment of the list, which sweeps table_size, and writes a run's folder with records.csv
 /// and time.csv. Everything runs in the calling thread, the repeats of the methods by turns, each after a call to warm up. A

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The answer of a unit as JSON: numbers read back as the same doubles.
+#include "apps/results/measures.h"
 #include "apps/runtime/json.h"
 #include "apps/study/evaluate_unit.h"
 #include "kernel/error.h"
@@ -25,28 +26,31 @@ std::vector<int> counts_of(const Json& json) {
 }
 
 Json to_json(const PoseScores& scores) {
-  return {json_or_null(scores.rotation_error_deg), json_or_null(scores.translation_error_pr),
-          json_or_null(scores.mean_error_pr), json_or_null(scores.rmse_pr), json_or_null(scores.add_share)};
+  Json json = Json::array();
+  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_or_null(scores.*measure.score));
+  return json;
 }
 
 PoseScores pose_scores_of(const Json& json) {
-  return {number_of(json.at(0)), number_of(json.at(1)), number_of(json.at(2)), number_of(json.at(3)),
-          number_of(json.at(4))};
+  PoseScores scores;
+  std::size_t place = 0;
+  for (const PoseMeasure& measure : pose_measures()) scores.*measure.score = number_of(json.at(place++));
+  return scores;
 }
 
 Json to_json(const TaskResult& task) {
-  return {{"status", task.status},
-          {"selected", json_or_null(task.selected)},
-          {"correct", task.correct},
-          {"initial", to_json(task.initial)},
-          {"refined", to_json(task.refined)},
-          {"dense", to_json(task.dense)},
-          {"time_ms", json_or_null(task.time_ms)}};
+  return {
+      {"status", to_text(task.status)},       {"selected", json_or_null(task.selected)}, {"correct", task.correct},
+      {"initial", to_json(task.initial)},     {"refined", to_json(task.refined)},        {"dense", to_json(task.dense)},
+      {"time_ms", json_or_null(task.time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
   TaskResult task;
-  task.status = json.at("status");
+  const std::string status = json.at("status");
+  const std::optional<MethodStatus> known = parse_status(status);
+  if (!known) throw InvalidInput("unit_result", "status", status, "a status of a method");
+  task.status = *known;
   if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
   task.correct = counts_of(json.at("correct"));
   task.initial = pose_scores_of(json.at("initial"));

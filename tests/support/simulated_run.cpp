@@ -58,7 +58,7 @@ void add_experiment(RunFolder& run, const SimulatedExperiment& experiment) {
         record.level = level.label;
         record.pair = "pair" + std::to_string(pair) + (experiment.same_pairs ? "" : " at " + level.label);
         record.method = method;
-        record.status = "refined";
+        record.status = {MethodState::Refined};
         record.value = level.middle();
         record.matches = 1000;
         record.true_matches = std::max(1, static_cast<int>(std::lround(1000 * experiment.inlier_ratio)));

@@ -87,32 +87,6 @@ std::vector<StudyRecord> run_case(const std::string& folder, const ExperimentInf
   return records;
 }
 
-/// The means of the records of one level and method, as definitions of the study have them.
-std::string summary_line(const ExperimentInfo& experiment, const std::string& level, const std::string& method,
-                         const std::vector<StudyRecord>& records) {
-  int pairs = 0, excluded = 0, empty = 0, failed = 0, successes = 0;
-  double precision = 0, recall = 0, f1 = 0;
-  for (const StudyRecord& record : records) {
-    if (record.level != level || record.method != method) continue;
-    if (!record.matches) {
-      ++failed;
-    } else if (*record.true_matches < experiment.least_true_matches) {
-      ++excluded;
-    } else {
-      ++pairs;
-      empty += *record.selected == 0 ? 1 : 0;
-      precision += record.precision.value_or(0);
-      recall += record.recall.value_or(0);
-      f1 += record.f1.value_or(0);
-      successes += record.refined.mean_error_pr && *record.refined.mean_error_pr <= 5 ? 1 : 0;
-    }
-  }
-  const auto mean = [&](double sum) { return pairs > 0 ? to_text(sum / pairs) : std::string(); };
-  return csv_line({experiment.name, experiment.dataset, level, method, std::to_string(pairs), std::to_string(excluded),
-                   std::to_string(empty), mean(precision), mean(recall), mean(f1), mean(successes),
-                   std::to_string(failed)});
-}
-
 }  // namespace
 
 void put_run(const std::string& folder, const ExperimentInfo& experiment, const std::vector<StudyCase>& cases) {
@@ -125,7 +99,7 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
     std::vector<StudyRecord> found(experiment.methods.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       found[i].method = experiment.methods[i];
-      found[i].status = "failed: no vertices";
+      found[i].status = {MethodState::Failed, "no vertices"};
     }
     if (pair.source.vertices.rows() > 0) found = run_case(folder, experiment, pair, files);
     pairs[experiment.dataset + "/" + pair.name] = {
@@ -140,11 +114,6 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
   }
   std::string table = csv_line(record_columns());
   for (const StudyRecord& record : records) table += record_line(record);
-  std::vector<std::string> methods = experiment.methods;
-  methods.insert(methods.end(), {"oracle", "floor"});
-  std::string summary = "experiment,dataset,level,method,pairs,excluded,empty,precision,recall,f1,success_5pr,failed\n";
-  for (const StudyLevel& level : experiment.levels)
-    for (const std::string& method : methods) summary += summary_line(experiment, level.label, method, records);
   const Json manifest = {{"version", "0.1.0"},
                          {"command", "corral evaluate " + experiment.name + " --data data -o run"},
                          {"machine", {{"processor", "test"}, {"cores", 2}}},
@@ -160,9 +129,7 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
                             {"threshold_pr", experiment.threshold_pr},
                             {"least_true_matches", experiment.least_true_matches}}}},
                          {"pairs", pairs}};
-  write_files({{folder + "/manifest.json", manifest.dump(1)},
-               {folder + "/records.csv", table},
-               {folder + "/summary.csv", summary}});
+  write_files({{folder + "/manifest.json", manifest.dump(1)}, {folder + "/records.csv", table}});
 }
 
 }  // namespace corral::testing

@@ -17,7 +17,7 @@ struct StudyCase {
 };
 
 /// Matches the pairs, lets the experiment's methods and the bounds loose on them, and writes the folder of that run:
-/// meshes, manifest.json, records.csv, summary.csv, selections. A case without vertices is a pair that failed.
+/// meshes, manifest.json, records.csv, selections. A case without vertices is a pair that failed.
 void put_run(const std::string& folder, const ExperimentInfo& experiment, const std::vector<StudyCase>& cases);
 
 }  // namespace corral::testing

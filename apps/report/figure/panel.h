@@ -36,6 +36,7 @@ struct Panel {
   std::string name;  ///< of its files, without ending: letters, digits and . _ + - only
   std::string title, x_axis, y_axis;
   PanelAxes axes = PanelAxes::Levels;
+  bool smaller_is_better = false;
   std::vector<std::string> levels;
   std::vector<PanelSeries> series;  ///< in the order of the legend
   std::vector<PanelCount> level_counts, series_counts;

@@ -14,13 +14,13 @@ std::string number_text(const Panel& panel, double value) {
   return fixed(value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
 }
 
-/// The best value of a level as it is printed: the least time, the highest share; empty if there is none.
+/// The best value of a level as it is printed; empty if there is none.
 std::string best_of(const Panel& panel, std::size_t level) {
   std::optional<double> best;
   for (const PanelSeries& series : panel.series) {
     const std::optional<double>& value = series.values[level].value;
     if (!value || is_bound(series.method)) continue;
-    if (!best || (panel.axes == PanelAxes::Logarithmic ? *value < *best : *value > *best)) best = value;
+    if (!best || (panel.smaller_is_better ? *value < *best : *value > *best)) best = value;
   }
   return best ? number_text(panel, *best) : "";
 }

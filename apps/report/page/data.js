@@ -25,6 +25,7 @@ const isNumber = value => typeof value === 'number';
 
 /// A number with so many decimals; a dash where there is none.
 const fixed = (value, decimals) => isNumber(value) ? value.toFixed(decimals) : '–';
+const capitalized = text => text.charAt(0).toUpperCase() + text.slice(1);
 const counted = (count, one, many = one + 's') => `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
 
 // Records, one object each.
@@ -41,8 +42,7 @@ const experimentOf = record => data.experiments.find(e => e.run === record.run &
 const experimentTitle = experiment => (experiment.figure ? `(${experiment.figure}) ` : '') + experiment.title;
 for (const record of records) {
   record.place = experimentOf(record);
-  const least = record.place ? record.place.least_true_matches : 1;
-  record.excluded = isNumber(record.true_matches) && record.true_matches < least;
+  record.state = record.status.split(':')[0];  // 'failed' and 'too large' with the cause behind it
 }
 
 // Every grouper has one colour, one marker and one dash: those of the figures, whose markers have gnuplot's numbers. Chart.js

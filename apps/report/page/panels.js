@@ -3,11 +3,8 @@
 'use strict';
 
 const metrics = [
-  {name: 'precision', title: 'Precision'},
-  {name: 'recall', title: 'Recall'},
-  {name: 'f1', title: 'F1'},
-  {name: 'success_5pr', title: 'Registration success'},
-  {name: 'median_ms', title: 'Median time of grouping (ms)', logarithmic: true},
+  ...data.measures.filter(measure => measure.panel),
+  {name: 'median_ms', axis: 'median time of grouping (ms)', title: 'median time of grouping (ms)', logarithmic: true},
 ];
 
 const panels = (() => {
@@ -26,7 +23,7 @@ const panels = (() => {
 
   function linesOf(mean) {
     const share =
-        metrics.filter(m => isNumber(mean[m.name])).map(m => `${m.title.toLowerCase()} ${valueOf(m, mean[m.name])}`);
+        metrics.filter(m => isNumber(mean[m.name])).map(m => `${m.title} ${valueOf(m, mean[m.name])}`);
     const counts = ['pairs', 'excluded', 'empty', 'failed', 'runs']
                        .filter(name => isNumber(mean[name]))
                        .map(name => `${name} ${mean[name]}`);
@@ -84,11 +81,11 @@ const panels = (() => {
     const canvas = element('canvas', {
       tabindex: 0,
       role: 'img',
-      'aria-label': `${metric.title} of ${experiment.methods.length} groupers against ${
+      'aria-label': `${capitalized(metric.axis)} of ${experiment.methods.length} groupers against ${
           experiment.axis}; the numbers are in the table below. Arrow keys walk through the points.`
     });
     grid.append(
-        element('figure', {}, element('figcaption', {}, metric.title), element('div', {class: 'plot'}, canvas)));
+        element('figure', {}, element('figcaption', {}, capitalized(metric.axis)), element('div', {class: 'plot'}, canvas)));
     const shown = [...experiment.methods, ...experiment.bounds];
     const describe = (series, column) => {
       const mean = meanOf(experiment, experiment.levels[column], shown[series]);
@@ -162,7 +159,7 @@ const panels = (() => {
     if (perLevel.every(m => !isNumber(m.pairs))) return `Measured alone, on one thread.${gaps}`;
     const sum = (rows, name) => rows.reduce((total, row) => total + (row[name] || 0), 0);
     const pairs = perLevel.map(m => m.pairs), low = Math.min(...pairs), high = Math.max(...pairs);
-    const failed = records.filter(r => r.place === experiment && r.status.startsWith('failed')).length;
+    const failed = records.filter(r => r.place === experiment && r.state === 'failed').length;
     const own = experiment.means.filter(m => experiment.methods.includes(m.method));
     return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${
                experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +

@@ -12,18 +12,9 @@ const recordTable = (() => {
     {title: 'Level', text: true, value: r => r.level, key: r => r.place ? r.place.levels.indexOf(r.level) : -1},
     {title: 'Pair', text: true, value: r => r.pair},
     {title: 'Grouper', text: true, value: r => labelOf(r.method), key: r => methods.indexOf(r.method)},
-    {title: 'Matches', value: r => r.matches, decimals: 0},
-    {title: 'Right', value: r => r.true_matches, decimals: 0},
-    {title: 'Selected', value: r => r.selected, decimals: 0},
-    {title: 'Correct', value: r => r.correct, decimals: 0},
-    {title: 'Precision', value: r => r.precision, decimals: 3},
-    {title: 'Recall', value: r => r.recall, decimals: 3},
-    {title: 'F1', value: r => r.f1, decimals: 3},
-    {title: 'Mean error (pr), initial', value: r => r.initial_mean_error_pr, decimals: 2},
-    {title: 'refined', value: r => r.refined_mean_error_pr, decimals: 2},
-    {title: 'dense', value: r => r.dense_mean_error_pr, decimals: 2},
-    {title: 'Rotation (°)', value: r => r.rotation_error_deg, decimals: 2},
-    {title: 'Time (ms)', value: r => r.time_ms, decimals: 2},
+    ...data.measures.filter(measure => measure.record).map(({name, title, unit, decimals}) => ({
+      title: capitalized(title) + (unit ? ` (${unit})` : ''), decimals, value: r => r[name]
+    })),
     {title: 'Status', text: true, value: r => r.excluded ? `excluded; ${r.status}` : r.status},
   ].filter(column => column.text || records.some(record => isNumber(column.value(record))));
 
@@ -32,7 +23,7 @@ const recordTable = (() => {
     'no success': r => !r.excluded && !(isNumber(r.refined_mean_error_pr) && r.refined_mean_error_pr <= 5),
     'empty selection': r => r.selected === 0,
     'excluded pair': r => r.excluded,
-    'failed': r => r.status.startsWith('failed'),
+    'failed': r => r.state === 'failed',
   };
 
   const fill = (id, options) =>

@@ -24,7 +24,7 @@
 
   function summarize() {
     const pairs = unique(records.map(r => `${r.run}/${r.dataset}/${r.pair}`)).length;
-    const failed = records.filter(r => r.status.startsWith('failed')).length;
+    const failed = records.filter(r => r.state === 'failed').length;
     const excluded =
         unique(records.filter(r => r.excluded).map(r => `${r.run}/${r.experiment}/${r.level}/${r.pair}`)).length;
     byId('summary').textContent = [

@@ -153,18 +153,28 @@ TEST(ClaimFile, NamesWhatIsWrong) {
   EXPECT_THAT(complaint("of = \"precison\", is = [\"a > b\"]"), HasSubstr("did you mean 'precision'?"));
   EXPECT_THAT(complaint("take = \"mean\""), HasSubstr("a rule needs"));
   EXPECT_THAT(complaint("tke = \"mean\", is = [\"a > b\"]"), HasSubstr("did you mean 'take'?"));
-  EXPECT_THAT(complaint("take = \"difference\", is = [\"a > b\"]"), HasSubstr("with"));
+  EXPECT_THAT(complaint("take = \"correlation\", is = [\"it > 0\"]"), HasSubstr("with"));
+  EXPECT_THAT(complaint("with = [\"y\"], take = \"mean\", is = [\"a > b\"]"), HasSubstr("with"));
+  EXPECT_THAT(complaint("take = \"count\", is = [\"a > b\"]"), HasSubstr("over"));
+  EXPECT_THAT(complaint("take = \"rise\", over = \"pairs\", is = [\"a > b\"]"), HasSubstr("over"));
   EXPECT_THAT(complaint("first = [2, 1], is = [\"a > b\"]"), HasSubstr("first"));
   EXPECT_THAT(complaint("is = [\"a > b\"], note = true"), HasSubstr("parts"));
   EXPECT_THAT(complaint("is = [\"a > nan\"]"), HasSubstr("found 'nan'"));
   EXPECT_THAT(complaint("is = [\"rank(a) > 1e30\"]"), HasSubstr("expected a rank"));
   EXPECT_THAT(complaint("is = [\"rank(a) > b\"]"), HasSubstr("expected a rank"));
-  EXPECT_THAT(complaint("last_levels = 4294967297, is = [\"a > b\"]"), HasSubstr("last_levels: out of range"));
+  EXPECT_THAT(complaint("after = 4294967297, is = [\"a > b\"]"), HasSubstr("after: out of range"));
   EXPECT_THAT(complaint("after = -1, is = [\"a > b\"]"), HasSubstr("after: out of range"));
 }
 
+TEST(ClaimFile, TakesAnyMeasureByItsTitle) {
+  EXPECT_TRUE(rule("is = [\"a > b\"]").of.is_measure("f1"));
+  EXPECT_TRUE(rule("of = \"success\", is = [\"a > b\"]").of.is_measure("success_5pr"));
+  EXPECT_TRUE(rule("of = \"time\", is = [\"a > b\"]").of.is_time());
+  EXPECT_TRUE(rule("of = \"inlier ratio\", is = [\"it > 0\"]").of.is_of_pairs());
+}
+
 TEST(ClaimFile, AskForNoMethodWhereThereIsOneNumber) {
-  for (const std::string kind : {"of = \"inlier ratio\"", "with = \"y\", take = \"correlation\""}) {
+  for (const std::string kind : {"of = \"inlier ratio\"", "with = [\"y\"], take = \"correlation\""}) {
     EXPECT_NO_THROW(rule(kind + ", is = [\"it > 0.5\"]"));
     for (const std::string test : {"is = [\"b > 0.5\"]", "is = [\"it > mean(a,b)\"]", "is = [\"rank(a) <= 1\"]",
                                    "largest = [\"b\"]", "smallest = [\"b\"]"})

@@ -25,7 +25,7 @@ using Verdicts = std::map<std::string, ClaimVerdict>;
 
 Verdicts judge(const std::vector<RunFolder>& runs) {
   Verdicts verdicts;
-  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), runs)) verdicts[verdict.id] = verdict;
+  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) verdicts[verdict.id] = verdict;
   return verdicts;
 }
 
@@ -58,7 +58,8 @@ TEST(Claims, AllAreDecidedOnACompleteRun) {
   run.folder = folder.path();
   testing::write_run(run);
   int decided[2] = {};
-  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), {read_run(run.folder)})) {
+  const std::vector<RunFolder> runs = {read_run(run.folder)};
+  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) {
     EXPECT_NE(verdict.verdict, Verdict::Undecidable) << verdict.id << " " << verdict.parts.front().reason;
     EXPECT_TRUE(verdict.margin) << verdict.id;
     EXPECT_FALSE(verdict.experiments.empty()) << verdict.id;

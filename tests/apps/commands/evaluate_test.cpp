@@ -168,7 +168,8 @@ TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
   for (const StudyRecord& record : read_run(place_ / "run").records) {
     if (record.pair != "m1-0.25") continue;
     ++failed;
-    EXPECT_THAT(record.status, AllOf(StartsWith("failed: "), HasSubstr("m1-0.25.ply"), HasSubstr("does not exist")));
+    EXPECT_THAT(to_text(record.status),
+                AllOf(StartsWith("failed: "), HasSubstr("m1-0.25.ply"), HasSubstr("does not exist")));
     EXPECT_FALSE(record.matches || record.precision || record.selected);
   }
   EXPECT_EQ(failed, 10);

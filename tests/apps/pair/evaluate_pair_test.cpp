@@ -50,7 +50,7 @@ TEST(EvaluateMethod, ScoresRefinesAndJudges) {
   const MethodRecord record = evaluate_method("mine", selecting(pair.made.inliers), pair.made.matches, pair.truth, 1);
   EXPECT_EQ(record.method, "mine");
   EXPECT_EQ(record.failure, "");
-  EXPECT_EQ(record.status(), "refined");
+  EXPECT_EQ(to_text(record.status()), "refined");
   EXPECT_EQ(record.found.selected, pair.made.inliers);
   EXPECT_EQ(record.score.value().precision, 1);
   EXPECT_EQ(record.score->selected, 60);
@@ -71,7 +71,7 @@ TEST(EvaluateMethod, WithoutAPoseThereAreNoErrors) {
   const Problem pair = problem();
   for (const Indices& rows : {Indices{}, Indices{3}, Indices{3, 7}}) {
     const MethodRecord record = evaluate_method("mine", selecting(rows), pair.made.matches, pair.truth, 1);
-    EXPECT_EQ(record.status(), "too few rows");
+    EXPECT_EQ(to_text(record.status()), "too few rows");
     EXPECT_FALSE(record.errors.has_value());
     EXPECT_EQ(record.score.value().selected, static_cast<int>(rows.size()));
     EXPECT_EQ(record.score->precision.has_value(), !rows.empty());
@@ -83,13 +83,14 @@ TEST(EvaluateMethod, AMethodThatThrowsIsARecord) {
   const MethodRecord refused = evaluate_method("mine", throwing(InvalidInput("mine", "column x", "absent", "a column")),
                                                pair.made.matches, pair.truth, 1);
   EXPECT_EQ(refused.failure, "mine: column x is absent, expected a column");
-  EXPECT_EQ(refused.status(), "failed: mine: column x is absent, expected a column");
+  EXPECT_EQ(to_text(refused.status()), "failed: mine: column x is absent, expected a column");
   EXPECT_FALSE(refused.score.has_value());
   EXPECT_FALSE(refused.errors.has_value());
   EXPECT_FALSE(refused.pose.target_from_source.has_value());
   EXPECT_NE(evaluate_method("mine", throwing(std::bad_alloc()), pair.made.matches, pair.truth, 1).failure, "");
-  EXPECT_EQ(evaluate_method("mine", throwing(std::runtime_error("no")), pair.made.matches, pair.truth, 1).status(),
-            "failed: no");
+  EXPECT_EQ(
+      to_text(evaluate_method("mine", throwing(std::runtime_error("no")), pair.made.matches, pair.truth, 1).status()),
+      "failed: no");
 }
 
 TEST(EvaluateMethod, AMethodThatNeedsTooMuchMemoryIsARecordAndIsNotAsked) {
@@ -97,11 +98,12 @@ TEST(EvaluateMethod, AMethodThatNeedsTooMuchMemoryIsARecordAndIsNotAsked) {
   ConfiguredGrouper greedy = throwing(std::runtime_error("asked"));
   greedy.working_memory = [](int matches) { return 1e6 * matches; };
   const MethodRecord refused = evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 99e6);
-  EXPECT_EQ(refused.status(), "too large: needs 100.0 MB, the limit is 99.0 MB");
+  EXPECT_EQ(to_text(refused.status()), "too large: needs 100.0 MB, the limit is 99.0 MB");
   EXPECT_TRUE(refused.is_too_large);
   EXPECT_FALSE(refused.score.has_value());
   EXPECT_FALSE(refused.pose.target_from_source.has_value());
-  EXPECT_EQ(evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 100e6).status(), "failed: asked");
+  EXPECT_EQ(to_text(evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 100e6).status()),
+            "failed: asked");
 }
 
 TEST(EvaluateMethod, ASelectionThatIsNoneIsARecord) {

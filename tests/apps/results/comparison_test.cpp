@@ -43,7 +43,7 @@ const MethodPair& find(const MethodComparison& comparison, const std::string& fi
 }
 
 TEST(Comparison, TellsDifferenceFromChance) {
-  const MethodComparison comparison = compare_methods(experiment_tables(run_of(false)).at(0), Metric::Precision);
+  const MethodComparison comparison = compare_methods(experiment_tables(run_of(false)).at(0), measure("precision"));
   EXPECT_EQ(comparison.pairs, 24);
   EXPECT_EQ(comparison.tests.size(), 21u);
   const MethodPair& clear = find(comparison, "st", "gc");
@@ -64,7 +64,7 @@ TEST(Comparison, TellsDifferenceFromChance) {
 }
 
 TEST(Comparison, TakesAPairAtSeveralLevelsAsOne) {
-  const MethodComparison comparison = compare_methods(experiment_tables(run_of(true)).at(0), Metric::Precision);
+  const MethodComparison comparison = compare_methods(experiment_tables(run_of(true)).at(0), measure("precision"));
   EXPECT_EQ(comparison.pairs, 12);
   EXPECT_NEAR(find(comparison, "nnsr", "st").difference.mean, 0, 1e-12);  // above at one level and below at the other
   EXPECT_LT(find(comparison, "st", "gc").p, 0.01);
@@ -72,7 +72,7 @@ TEST(Comparison, TakesAPairAtSeveralLevelsAsOne) {
 
 TEST(Comparison, TestsSuccessesByMcNemar) {
   // A success is a precision above 0.5: ST on the pairs 7 .. 11, GC on 1 .. 11.
-  const MethodComparison comparison = compare_methods(experiment_tables(run_of(false)).at(0), Metric::Success);
+  const MethodComparison comparison = compare_methods(experiment_tables(run_of(false)).at(0), measure("success_5pr"));
   const MethodPair& pair = find(comparison, "st", "gc");
   EXPECT_NEAR(pair.difference.mean, -6 / 12.0, 1e-12);
   EXPECT_NEAR(pair.p, 2 / 4096.0, 1e-12);  // 12 pairs are GC's alone, none ST's
@@ -85,13 +85,13 @@ TEST(Comparison, LeavesOutPairsThatAMethodLacks) {
   run.records.erase(std::remove_if(run.records.begin(), run.records.end(), is_lost), run.records.end());
   for (StudyRecord& record : run.records)
     if (record.pair == "pair1 at 0.1") record.true_matches = 0;
-  EXPECT_EQ(compare_methods(experiment_tables(run).at(0), Metric::F1).pairs, 22);
+  EXPECT_EQ(compare_methods(experiment_tables(run).at(0), measure("f1")).pairs, 22);
 }
 
 TEST(Comparison, HasNothingToSayOfOneMethod) {
   RunFolder run = run_of(false);
   run.experiments[0].methods = {"gc"};
-  const MethodComparison comparison = compare_methods(experiment_tables(run).at(0), Metric::F1);
+  const MethodComparison comparison = compare_methods(experiment_tables(run).at(0), measure("f1"));
   EXPECT_TRUE(comparison.tests.empty());
   EXPECT_EQ(comparison.levels.size(), 2u);
   EXPECT_THROW(metric_of("f2"), InvalidInput);

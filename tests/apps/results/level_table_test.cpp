@@ -57,30 +57,28 @@ TEST(LevelTable, AveragesAsTheDefinitionsSay) {
   failed.level = "0.1";
   failed.pair = "e";
   failed.method = "gc";
-  failed.status = "failed: no keypoints";
+  failed.status = {MethodState::Failed, "no keypoints"};
   const LevelTable level = experiment_tables(run_of({aligned, missed, empty, excluded, failed})).at(0).levels.at(0);
   const MethodColumns& columns = level.methods.at("gc");
   EXPECT_THAT(level.pairs, ElementsAre("a", "b", "c", "d", "e"));
-  EXPECT_EQ(level.counted(), 3);
-  EXPECT_EQ(level.excluded, 1);
-  EXPECT_EQ(level.failed, 1);
+  EXPECT_EQ(level.count(PairRole::Judged), 3);
+  EXPECT_EQ(level.count(PairRole::Excluded), 1);
+  EXPECT_EQ(level.count(PairRole::Failed), 1);
   EXPECT_EQ(columns.empty, 1);
-  EXPECT_DOUBLE_EQ(mean_of(columns.precision), (0.8 + 0.25 + 0) / 3);
-  EXPECT_DOUBLE_EQ(mean_of(columns.nonempty_precision), (0.8 + 0.25) / 2);
-  EXPECT_DOUBLE_EQ(mean_of(columns.recall), (0.4 + 0.25 + 0) / 3);
-  EXPECT_DOUBLE_EQ(mean_of(columns.f1), (16 / 30.0 + 0.25 + 0) / 3);  // of each pair, then the mean
-  EXPECT_DOUBLE_EQ(mean_of(columns.success), 1 / 3.0);
-  EXPECT_DOUBLE_EQ(pooled_precision(level, "gc"), 18 / 50.0);
-  EXPECT_DOUBLE_EQ(pooled_recall(level, "gc"), 18 / 70.0);
-  EXPECT_DOUBLE_EQ(mean_of(level.inlier_ratio), (0.2 + 0.4 + 0.1 + 0) / 4);
+  EXPECT_DOUBLE_EQ(mean_of(columns.numbers.at("precision")), (0.8 + 0.25 + 0) / 3);
+  EXPECT_DOUBLE_EQ(mean_of(columns.numbers.at("precision_nonempty")), (0.8 + 0.25) / 2);
+  EXPECT_DOUBLE_EQ(mean_of(columns.numbers.at("recall")), (0.4 + 0.25 + 0) / 3);
+  EXPECT_DOUBLE_EQ(mean_of(columns.numbers.at("f1")), (16 / 30.0 + 0.25 + 0) / 3);  // of each pair, then the mean
+  EXPECT_DOUBLE_EQ(mean_of(columns.numbers.at("success_5pr")), 1 / 3.0);
+  EXPECT_DOUBLE_EQ(mean_of(level.of_pairs.at("inlier_ratio")), (0.2 + 0.4 + 0.1 + 0) / 4);
 }
 
 TEST(LevelTable, ExcludesPairsWithTooFewTrueMatches) {
   RunFolder run = run_of({record_of("a", "gc", 2, 2, 1), record_of("b", "gc", 3, 2, 2)});
   run.experiments[0].least_true_matches = 3;
   const LevelTable level = experiment_tables(run).at(0).levels.at(0);
-  EXPECT_EQ(level.excluded, 1);
-  EXPECT_THAT(level.methods.at("gc").precision, ElementsAre(IsNan(), 1.0));
+  EXPECT_EQ(level.count(PairRole::Excluded), 1);
+  EXPECT_THAT(level.methods.at("gc").numbers.at("precision"), ElementsAre(IsNan(), 1.0));
 }
 
 TEST(LevelTable, AveragesRepeatsBeforePairs) {
@@ -90,8 +88,8 @@ TEST(LevelTable, AveragesRepeatsBeforePairs) {
   second.time_ms = 3;
   const LevelTable level =
       experiment_tables(run_of({first, second, record_of("b", "ransac", 10, 10, 0)})).at(0).levels.at(0);
-  EXPECT_THAT(level.methods.at("ransac").precision, ElementsAre(0.5, 0));
-  EXPECT_THAT(level.methods.at("ransac").time_ms, ElementsAre(DoubleEq(2), IsNan()));
+  EXPECT_THAT(level.methods.at("ransac").numbers.at("precision"), ElementsAre(0.5, 0));
+  EXPECT_THAT(level.methods.at("ransac").numbers.at("time_ms"), ElementsAre(DoubleEq(2), IsNan()));
   EXPECT_EQ(level.methods.at("ransac").empty, 1);
 }
 
@@ -99,30 +97,34 @@ TEST(LevelTable, KeepsTablesOfSeveralSizesOfAPairApart) {
   StudyRecord small = record_of("a", "gc", 10, 10, 10), large = record_of("a", "gc", 10, 10, 0);
   small.value = 300;
   large.value = 400;
-  EXPECT_EQ(experiment_tables(run_of({small, large})).at(0).levels.at(0).counted(), 2);
+  EXPECT_EQ(experiment_tables(run_of({small, large})).at(0).levels.at(0).count(PairRole::Judged), 2);
 }
 
 TEST(LevelTable, AMethodWithoutAnAnswerHasZeroAndIsNotEmpty) {
   StudyRecord refused = record_of("a", "st", 10, 0, 0);
-  refused.status = "too large: needs 9 GB";
+  refused.status = {MethodState::TooLarge, "needs 9 GB"};
   refused.selected.reset();
   refused.recall.reset();
   refused.f1.reset();
   const LevelTable level = experiment_tables(run_of({refused, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0);
-  EXPECT_EQ(mean_of(level.methods.at("st").precision), 0);
+  EXPECT_EQ(mean_of(level.methods.at("st").numbers.at("precision")), 0);
   EXPECT_EQ(level.methods.at("st").empty, 0);
   EXPECT_EQ(level.methods.at("st").failed, 1);
-  EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+  EXPECT_EQ(mean_of(level.methods.at("gc").numbers.at("precision")), 1);
   EXPECT_EQ(level.methods.at("gc").failed, 0);
 }
 
-TEST(LevelTable, APairWithoutATruthIsExcluded) {
+TEST(LevelTable, OfAPairWithoutATruthOnlyWhatNeedsNoneIsThere) {
   StudyRecord unknown = record_of("a", "gc", 0, 5, 0);
   unknown.true_matches.reset();
+  unknown.precision.reset();
+  unknown.correct.reset();
   const LevelTable level = experiment_tables(run_of({unknown, record_of("b", "gc", 10, 1, 1)})).at(0).levels.at(0);
-  EXPECT_EQ(level.excluded, 1);
-  EXPECT_EQ(level.failed, 0);
-  EXPECT_EQ(mean_of(level.methods.at("gc").precision), 1);
+  EXPECT_THAT(level.roles, ElementsAre(PairRole::Unjudged, PairRole::Judged));
+  const MethodColumns& columns = level.methods.at("gc");
+  for (const char* name : {"precision", "recall", "f1", "correct", "success_5pr", "refined_mean_error_pr"})
+    EXPECT_TRUE(std::isnan(columns.numbers.at(name)[0])) << name;
+  EXPECT_THAT(columns.numbers.at("selected"), ElementsAre(5, 1));
 }
 
 // Keypoint radii may give tables of a pair that are equally large.
@@ -137,9 +139,10 @@ TEST(LevelTable, KeepsTablesOfOneSizeOfAPairApart) {
         records.back().selection = correct > 0 ? "first.csv" : "second.csv";
       }
   const LevelTable level = experiment_tables(run_of(records)).at(0).levels.at(0);
-  EXPECT_EQ(level.counted(), 2);
+  EXPECT_EQ(level.count(PairRole::Judged), 2);
   EXPECT_THAT(level.selections, ElementsAre("first.csv", "second.csv"));
-  for (const char* method : {"gc", "ransac"}) EXPECT_THAT(level.methods.at(method).precision, ElementsAre(1, 0));
+  for (const char* method : {"gc", "ransac"})
+    EXPECT_THAT(level.methods.at(method).numbers.at("precision"), ElementsAre(1, 0));
 }
 
 // As where the number of matches is the level, and a pair has none as it failed.
@@ -157,14 +160,21 @@ TEST(LevelTable, PosesAreJudgedStageByStage) {
   good.refined.mean_error_pr = 1;
   good.refined.rotation_error_deg = 2;
   const auto columns = [&] { return experiment_tables(run_of({good, none})).at(0).levels.at(0).methods.at("gc"); };
-  EXPECT_THAT(columns().initial_success, ElementsAre(0, 0));
-  EXPECT_THAT(columns().success, ElementsAre(1, 0));
-  EXPECT_THAT(columns().success_area, ElementsAre(DoubleEq(success_area({1.0})), 0));
-  EXPECT_THAT(columns().rotation_error_deg, ElementsAre(2, std::numeric_limits<double>::infinity()));
-  EXPECT_THAT(columns().dense_success, ElementsAre(IsNan(), IsNan()));  // nobody tried
+  EXPECT_THAT(columns().numbers.at("initial_success_5pr"), ElementsAre(0, 0));
+  EXPECT_THAT(columns().numbers.at("success_5pr"), ElementsAre(1, 0));
+  EXPECT_THAT(columns().numbers.at("success_area"), ElementsAre(DoubleEq(success_area({1.0})), 0));
+  EXPECT_THAT(columns().numbers.at("refined_rotation_error_deg"),
+              ElementsAre(2, std::numeric_limits<double>::infinity()));
+  EXPECT_THAT(columns().numbers.at("dense_success_5pr"), ElementsAre(IsNan(), IsNan()));  // nobody tried
   good.dense.rotation_error_deg = 1;
   good.dense.mean_error_pr = 1;
-  EXPECT_THAT(columns().dense_success, ElementsAre(1, 0));
+  EXPECT_THAT(columns().numbers.at("dense_success_5pr"), ElementsAre(1, 0));
+}
+
+TEST(LevelTable, ALevelWithoutARowHasEmptyColumnsOfPairs) {
+  const LevelTable level = experiment_tables(run_of({})).at(0).levels.at(0);
+  for (const Measure* measure : measures_with(kOfPair)) EXPECT_TRUE(level.column(*measure, "")->empty());
+  EXPECT_FALSE(level.column(measure("precision"), "gc"));
 }
 
 TEST(LevelTable, RefusesALevelThatTheManifestLacks) {

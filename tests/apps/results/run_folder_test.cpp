@@ -24,7 +24,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    "gc",
                    2,
                    0.25,
-                   "failed: \"so\", it said",
+                   {MethodState::Failed, "\"so\", it said"},
                    10,
                    5,
                    4,
@@ -59,6 +59,16 @@ TEST(StudyRecord, NamesWhatIsWrong) {
   } catch (const IoError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr(path), HasSubstr("row 1"), HasSubstr("repeat")));
   }
+}
+
+TEST(StudyRecord, RefusesAStatusThatNoMethodHas) {
+  const ScratchFolder folder;
+  StudyRecord record;
+  record.status = {MethodState::Timed};
+  std::string line = record_line(record);
+  line.replace(line.find("timed"), 5, "fast");
+  const std::string path = put_text(folder / "records.csv", csv_line(record_columns()) + line);
+  EXPECT_THAT(testing::io_error_of([&] { read_records(path); }), HasSubstr("status is 'fast'"));
 }
 
 TEST(StudyRecord, SharesAreUpToOneAndErrorsNotBelowZero) {

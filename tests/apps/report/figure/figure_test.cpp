@@ -104,6 +104,7 @@ TEST(Panel, TheTableIsLatex) {
   EXPECT_THAT(text, HasSubstr("\\multicolumn{5}{l}{\\footnotesize 100 \\% of them}"));
   Panel times = small_panel();
   times.axes = PanelAxes::Logarithmic;
+  times.smaller_is_better = true;
   times.levels = {"1", "2", "3"};
   EXPECT_THAT(panel_latex(times), HasSubstr("\\textbf{0.500} & -- & \\textbf{0.250}"));  // the least is best
   times.series.push_back({"oracle", {{0.125, {}, {}}, {}, {}}});

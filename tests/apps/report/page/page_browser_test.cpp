@@ -51,9 +51,11 @@ struct Desk {
     run = read_run(folder / "run");
     PageOptions options;
     options.pairs_in_3d = 3;
-    options.verdicts = R"([{"id": "C1", "verdict": "holds", "margin": 0.02, "statement": "<b>RANSAC</b> leads"},
-                           {"id": "C2", "verdict": "undecidable", "margin": null, "statement": "no data"}])";
-    write_file(folder / "page.html", report_page({run}, options));
+    options.verdicts.emplace(2);
+    options.verdicts->front().verdict = Verdict::Holds;
+    options.verdicts->front().text = "<b>RANSAC</b> leads";
+    const std::vector<RunFolder> runs = {run};
+    write_file(folder / "page.html", report_page(runs, results_of(runs), options));
   }
 
   ScratchFolder folder;

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "apps/results/measures.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "apps/pair/evaluate_pair.h"
+#include "kernel/error.h"
+#include "kernel/evaluation.h"
+
+namespace corral {
+namespace {
+
+using R = StudyRecord;
+using Number = std::optional<double>;
+
+constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr auto Larger = Better::Larger, Smaller = Better::Smaller;
+constexpr auto Zero = Absent::Zero, LeftOut = Absent::LeftOut, Infinite = Absent::Infinite;
+constexpr auto None = Average::None, Mean = Average::Mean, Median = Average::Median, Pooled = Average::Pooled;
+
+Stored count(std::optional<int> R::*member) { return {member, nullptr, nullptr, nullptr}; }
+Stored number(Number R::*member) { return {nullptr, member, nullptr, nullptr}; }
+
+Number inlier_ratio(const R& record) {
+  if (!record.matches || !record.true_matches || *record.matches == 0) return std::nullopt;
+  return static_cast<double>(*record.true_matches) / *record.matches;
+}
+
+/// How much of its table a method keeps.
+Number selected_share(const R& record) {
+  if (!record.selected || !record.matches || *record.matches == 0) return std::nullopt;
+  return static_cast<double>(*record.selected) / *record.matches;
+}
+
+/// Whether a pose registers the pair, absent without a pose.
+template <PoseScores R::*Pose>
+Number success(const R& record) {
+  const PoseScores& scores = record.*Pose;
+  if (!scores.rotation_error_deg && !scores.mean_error_pr) return std::nullopt;
+  return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
+}
+
+Number area(const R& record) {
+  const Number& error = record.refined.mean_error_pr;
+  return error ? Number(success_area({error})) : std::nullopt;
+}
+
+// clang-format off
+const std::vector<Measure> kOfSelections = {
+    {"matches",            "matches",       "", 0, kAny, Larger,  count(&R::matches),      nullptr, LeftOut, None, kOfPair | kOnPage},
+    {"true_matches",       "right",         "", 0, kAny, Larger,  count(&R::true_matches), nullptr, LeftOut, None, kOfPair | kOnPage},
+    {"selected",           "selected",      "", 0, kAny, Larger,  count(&R::selected),     nullptr, Zero,    None, kOnPage},
+    {"correct",            "correct",       "", 0, kAny, Larger,  count(&R::correct),      nullptr, Zero,    None, kOnPage},
+    {"precision",          "precision",     "", 3, 1, Larger, number(&R::precision), nullptr, Zero, Mean, kHeadline | kFigure | kOnPage},
+    {"recall",             "recall",        "", 3, 1, Larger, number(&R::recall),    nullptr, Zero, Mean, kHeadline | kFigure | kOnPage},
+    {"f1",                 "F1",            "", 3, 1, Larger, number(&R::f1),        nullptr, Zero, Mean, kHeadline | kFigure | kOnPage},
+    {"success_5pr",        "success",       "", 3, 1, Larger, {}, success<&R::refined>, Zero, Mean,
+     kHeadline | kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr"},
+    {"pooled_precision",   "pooled precision", "", 3, 1, Larger, {}, nullptr, LeftOut, Pooled, 0, "", {"correct", "selected"}},
+    {"pooled_recall",      "pooled recall",    "", 3, 1, Larger, {}, nullptr, LeftOut, Pooled, 0, "", {"correct", "true_matches"}},
+    {"precision_nonempty", "precision of non-empty selections", "", 3, 1, Larger, {}, [](const R& r) { return r.precision; }, LeftOut, Mean},
+    {"inlier_ratio",       "inlier ratio",  "", 3, 1, Larger, {}, inlier_ratio, LeftOut, Mean, kOfPair},
+    {"frame_share",        "frame share",   "", 3, 1, Larger, number(&R::frame_share), nullptr, LeftOut, Mean, kOfPair},
+};
+const std::vector<Measure> kOfCalls = {
+    {"time_ms",             "time",            "ms", 2, kAny, Smaller, number(&R::time_ms), nullptr, LeftOut, None, kOnPage | kEveryPair},
+    {"success_area",        "success area",    "", 3, 1, Larger, {}, area, Zero, Mean},
+    {"initial_success_5pr", "initial success", "", 3, 1, Larger, {}, success<&R::initial>, Zero, Mean,
+     kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},
+    {"dense_success_5pr",   "dense success",   "", 3, 1, Larger, {}, success<&R::dense>, Zero, Mean,
+     kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, dense"},
+    {"selected_share",      "selected share",  "", 3, 1, Smaller, {}, selected_share, Zero, Mean, kOnPage},
+};
+
+const std::vector<PoseMeasure> kOfPoses = {
+    {"rotation_error_deg",   "rotation error",    "deg",       &PoseScores::rotation_error_deg,   true,  false},
+    {"translation_error_pr", "translation error", "pr",        &PoseScores::translation_error_pr, true,  false},
+    {"mean_error_pr",        "mean error",        "pr",        &PoseScores::mean_error_pr,        true,  true},
+    {"rmse_pr",              "RMSE",              "pr",        &PoseScores::rmse_pr,              false, false},
+    {"add_share",            "ADD",               "diameters", &PoseScores::add_share,            false, false},
+};
+// clang-format on
+
+/// Errors of a pose that is not there are the worst.
+void add_pose(std::vector<Measure>& table, const std::string& stage, PoseScores R::*pose) {
+  for (const PoseMeasure& of : kOfPoses) {
+    const bool is_summed = of.is_summed && stage == "refined";
+    const Stored stored = {nullptr, nullptr, pose, of.score};
+    table.push_back({stage + "_" + of.name, std::string(of.title) + ", " + stage, of.unit, 2, kAny, Smaller, stored,
+                     nullptr, Infinite, is_summed ? Median : None, is_summed || of.is_on_page ? kOnPage : 0});
+  }
+}
+
+std::vector<Measure> make_table() {
+  std::vector<Measure> table = kOfSelections;
+  add_pose(table, "initial", &R::initial);
+  add_pose(table, "refined", &R::refined);
+  add_pose(table, "dense", &R::dense);
+  table.insert(table.end(), kOfCalls.begin(), kOfCalls.end());
+  return table;
+}
+
+}  // namespace
+
+std::optional<double> Measure::of(const StudyRecord& record) const {
+  if (derived) return derived(record);
+  if (stored.pose) return record.*stored.pose.*stored.score;
+  if (stored.number) return record.*stored.number;
+  if (stored.count && record.*stored.count) return *(record.*stored.count);
+  return std::nullopt;
+}
+
+std::string Measure::word() const {
+  std::string word = title;
+  for (char& letter : word) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return word;
+}
+
+const std::vector<Measure>& measures() {
+  static const std::vector<Measure> table = make_table();
+  return table;
+}
+
+const std::vector<PoseMeasure>& pose_measures() { return kOfPoses; }
+
+std::vector<const Measure*> measures_with(unsigned flag) {
+  std::vector<const Measure*> found;
+  for (const Measure& measure : measures())
+    if (measure.has(flag)) found.push_back(&measure);
+  return found;
+}
+
+const Measure& measure(const std::string& name) {
+  const auto& table = measures();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Measure& entry) { return entry.name == name; });
+  if (found == table.end()) throw InvalidInput("measure", "name", name, "one of the table of measures");
+  return *found;
+}
+
+PairRole role_of(const StudyRecord& record, int least_true_matches) {
+  if (!record.matches) return PairRole::Failed;
+  if (!record.true_matches) return PairRole::Unjudged;
+  return *record.true_matches < std::max(1, least_true_matches) ? PairRole::Excluded : PairRole::Judged;
+}
+
+double counted_number(const Measure& measure, const StudyRecord& record, PairRole role) {
+  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  const bool is_out = role == PairRole::Excluded || role == PairRole::Failed;
+  if (is_out && !measure.has(kEveryPair)) return kAbsent;
+  if (const auto number = measure.of(record)) return *number;
+  if (role != PairRole::Judged || measure.absent == LeftOut) return kAbsent;
+  return measure.absent == Zero ? 0 : kAny;
+}
+
+}  // namespace corral

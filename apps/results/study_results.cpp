@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "apps/results/study_results.h"
+
+#include "apps/results/statistics.h"
+#include "io/csv_file.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+
+bool is_of_times(const ExperimentInfo& info) { return info.attribute == "table_size"; }
+
+std::vector<TimeRow> time_rows(const ExperimentInfo& info, const std::vector<StudyRecord>& records) {
+  std::vector<TimeRow> rows;
+  for (const StudyLevel& level : info.levels)
+    for (const std::string& method : info.methods) {
+      std::vector<double> times;
+      for (const StudyRecord& record : records)
+        if (record.experiment == info.name && record.level == level.label && record.method == method && record.time_ms)
+          times.push_back(*record.time_ms);
+      if (times.empty()) continue;
+      rows.push_back({info.name, info.dataset, level.label, method, static_cast<int>(times.size()),
+                      quantile_of(times, 0.5), mean_of(times), quantile_of(times, 0.25), quantile_of(times, 0.75)});
+    }
+  return rows;
+}
+
+std::string time_text(const std::vector<TimeRow>& rows) {
+  std::string text = "experiment,dataset,level,method,runs,median_ms,mean_ms,lower_quartile_ms,upper_quartile_ms\n";
+  for (const TimeRow& row : rows) {
+    std::vector<std::string> cells = {row.experiment, row.dataset, row.level, row.method, std::to_string(row.runs)};
+    for (const double time : {row.median_ms, row.mean_ms, row.lower_quartile_ms, row.upper_quartile_ms})
+      cells.push_back(to_text(time));
+    text += csv_line(cells);
+  }
+  return text;
+}
+
+std::vector<StudyResults> tables_of(const std::vector<RunFolder>& runs) {
+  std::vector<StudyResults> results;
+  for (const RunFolder& run : runs) results.push_back({&run, experiment_tables(run), {}});
+  return results;
+}
+
+std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs) {
+  std::vector<StudyResults> results = tables_of(runs);
+  for (StudyResults& study : results) study.summary = summarize(study.tables);
+  return results;
+}
+
+std::vector<RunFolder> read_runs(const std::vector<std::string>& folders) {
+  std::vector<RunFolder> runs;
+  for (const std::string& folder : folders) runs.push_back(read_run(folder));
+  return runs;
+}
+
+}  // namespace corral

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/results/summary.h"
+
+namespace corral {
+
+/// Times of one method on tables of one size.
+struct TimeRow {
+  std::string experiment, dataset, level, method;
+  int runs = 0;  ///< timed, over all tables
+  double median_ms = 0, mean_ms = 0, lower_quartile_ms = 0, upper_quartile_ms = 0;
+};
+
+/// Whether an experiment only takes times: it sweeps the size of the table.
+bool is_of_times(const ExperimentInfo& info);
+
+/// The times of such an experiment, by level and method; those without any are left out.
+std::vector<TimeRow> time_rows(const ExperimentInfo& info, const std::vector<StudyRecord>& records);
+std::string time_text(const std::vector<TimeRow>& rows);  ///< as the file time.csv
+
+/// What is worked out of a run's records, once. The run must outlive it.
+struct StudyResults {
+  const RunFolder* run = nullptr;
+  std::vector<ExperimentTable> tables;  ///< of each experiment
+  std::vector<SummaryRow> summary;
+};
+std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs);
+std::vector<StudyResults> results_of(std::vector<RunFolder>&& runs) = delete;
+/// The same without the summary, whose intervals take a second.
+std::vector<StudyResults> tables_of(const std::vector<RunFolder>& runs);
+
+/// Throws IoError as read_run.
+std::vector<RunFolder> read_runs(const std::vector<std::string>& folders);
+
+}  // namespace corral
