@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kernel/types.h"
-#include "kernel/vectorized.h"
+#include "kernel/columns.h"
 
 namespace corral {
 

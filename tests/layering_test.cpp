@@ -29,16 +29,16 @@ struct Room {
 
 // Rooms by folder; the longest that fits a file is its room.
 const std::map<std::string, Room> kRooms = {
-    {"kernel", {{"kernel"}, {"Eigen"}}},
-    {"kernel/surface", {{"kernel", "kernel/surface"}, {"Eigen", "CGAL", "OpenMesh", "flann", "boost"}}},
-    {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
-    {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
+    {"kernel", {{"kernel"}, {"Eigen", "hwy"}}},
+    {"kernel/surface", {{"kernel", "kernel/surface"}, {"Eigen", "hwy", "CGAL", "OpenMesh", "flann", "boost"}}},
+    {"grouping", {{"kernel", "grouping"}, {"Eigen", "hwy"}}},
+    {"refine", {{"kernel", "refine"}, {"Eigen", "hwy", "ceres"}}},
     {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen", "toml++"}}},
     {"apps",
      {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"},
       {"Eigen", "CLI", "nlohmann", "oneapi", "boost"}}},
 };
-const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
+const Names kNeverInHeaders = {"hwy", "CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
 struct Include {
@@ -85,6 +85,11 @@ std::vector<Include> includes() {
 
 bool is_header(const std::string& file) { return fs::path(file).extension() == ".h"; }
 
+/// Compiled once for each target of Highway, and only in sources.
+bool is_for_targets(const std::string& file) {
+  return std::regex_search(file, std::regex("-inl\\.h$"));
+}
+
 TEST(Layering, RoomsIncludeOnlyWhatThePlanAllows) {
   int checked = 0;
   for (const Include& include : includes()) {
@@ -111,7 +116,7 @@ TEST(Layering, LibrariesStayInTheirRooms) {
     if (room != "apps") {
       EXPECT_FALSE(kOnlyInApps.count(include.name)) << include.file << " includes " << include.name;
     }
-    if (is_header(include.file)) {
+    if (is_header(include.file) && !is_for_targets(include.file)) {
       EXPECT_FALSE(kNeverInHeaders.count(owner)) << include.file << " includes " << include.name;
     }
   }
@@ -124,8 +129,28 @@ TEST(Layering, EveryFileIsLicensedAndOfAReadableLength) {
     EXPECT_EQ(text.rfind("// SPDX-License-Identifier: MIT\n", 0), 0u) << file;
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << file;
     if (is_header(file)) {
-      EXPECT_NE(text.find("#pragma once"), std::string::npos) << file;
+      EXPECT_NE(text.find(is_for_targets(file) ? "HWY_TARGET_TOGGLE" : "#pragma once"), std::string::npos) << file;
     }
+  }
+}
+
+TEST(Layering, HeadersForTargetsStayInSources) {
+  int checked = 0;
+  for (const Include& include : includes()) {
+    if (!include.quoted || !is_for_targets(include.name)) continue;
+    ++checked;
+    EXPECT_TRUE(!is_header(include.file) || is_for_targets(include.file)) << include.file << " includes " << include.name;
+  }
+  EXPECT_GT(checked, 10);
+}
+
+/// Vector code stands on Highway: what it is made of would build with one compiler, or for one machine, only.
+TEST(Layering, NoAssemblyAttributesOrBuiltins) {
+  static const std::regex own("\\basm\\s*(volatile\\s*)?\\(|__attribute__|\\[\\[gnu::|__builtin_|immintrin|arm_neon");
+  for (const std::string& file : source_files()) {
+    std::smatch match;
+    const std::string text = read(kRoot / file);
+    if (file != "tests/layering_test.cpp") EXPECT_FALSE(std::regex_search(text, match, own)) << file << ": " << match.str();
   }
 }
 

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/surface/search/point_grid.h"
+#include "kernel/surface/support_loops.h"
 
 namespace corral {
 namespace {
@@ -37,28 +37,6 @@ Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, int ahead, const S
   };
   const auto positive = std::count_if(first, first + 5, is_ahead);
   return positive < 3 ? Eigen::Vector3d(-axis) : axis;
-}
-
-/// How many of the support lie ahead on each of two axes, or beside.
-std::array<int, 2> count_ahead(const std::array<Eigen::Vector3d, 2>& axes, const Support& support) {
-  std::array<int, 2> ahead;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
-    Lanes count[2] = {zero, zero}, axis[2][3];
-    for (std::size_t which : {0, 1})
-      for (int i = 0; i < 3; ++i) axis[which][i] = Lanes::fill(axes[which](i));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
-      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
-      for (std::size_t which : {0, 1}) {
-        const Lanes along = x * axis[which][0] + y * axis[which][1] + z * axis[which][2];
-        count[which] = select(zero <= along, count[which] + one, count[which]);
-      }
-    }
-    const int padding = padded(support.count) - support.count;  // lies at the point: ahead
-    for (std::size_t which : {0, 1}) ahead[which] = static_cast<int>(sum(count[which])) - padding;
-  });
-  return ahead;
 }
 
 /// The support of every vertex that is asked for, through a grid.
@@ -118,29 +96,8 @@ class SupportFinder {
   }
 
   void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      const Lanes x = Lanes::fill(grid_.x()[slot]), y = Lanes::fill(grid_.y()[slot]), z = Lanes::fill(grid_.z()[slot]),
-                  squared = Lanes::fill(squared_), zero = Lanes::fill(0);
-      const double* const from[] = {grid_.x().data(), grid_.y().data(), grid_.z().data(),
-                                    nx_.data(),       ny_.data(),       nz_.data()};
-      double* const to[] = {support.x.data(),  support.y.data(),  support.z.data(),
-                            support.nx.data(), support.ny.data(), support.nz.data()};
-      std::size_t count = 0;
-      int at = 0;
-      // By whole cache lines: what else stands in them lies beyond the radius, or in the next range, which goes on behind.
-      for (const SlotRange& range : ranges)
-        for (at = std::max(at, range.begin / kLanes * kLanes); at < range.end; at += kLanes) {
-          const Lanes dx = Lanes::load(from[0] + at) - x, dy = Lanes::load(from[1] + at) - y,
-                      dz = Lanes::load(from[2] + at) - z, away = dx * dx + dy * dy + dz * dz;
-          const unsigned chosen = bits(away <= squared) & bits(zero < away);
-          if (chosen == 0) continue;
-          dx.pack(chosen, to[0] + count), dy.pack(chosen, to[1] + count), dz.pack(chosen, to[2] + count);
-          for (int i = 3; i < 6; ++i) Lanes::load(from[i] + at).pack(chosen, to[i] + count);
-          count += static_cast<std::size_t>(__builtin_popcount(chosen));
-        }
-      support.count = static_cast<int>(count);
-    });
+    const SlotColumns columns{{grid_.x().data(), grid_.y().data(), grid_.z().data(), nx_.data(), ny_.data(), nz_.data()}};
+    collect_support(columns, slot, squared_, ranges, support);
   }
 
   /// The distances, and nothing in the padding.
@@ -150,13 +107,7 @@ class SupportFinder {
          {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
       std::fill(column->begin() + static_cast<std::ptrdiff_t>(count),
                 column->begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      for (std::size_t i = 0; i < end; i += kLanes) {
-        const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
-        square_root(x * x + y * y + z * z).store(&support.distance[i]);
-      }
-    });
+    measure_support(support);
   }
 
   PointGrid grid_;
@@ -191,25 +142,10 @@ void Support::add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal) 
 
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius) {
   if (support.count < kSmallestFrame) return std::nullopt;
+  const WeightedMoments sums = sum_moments(support, radius);
   Eigen::Matrix3d moments;
-  double weights = 0;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes limit = Lanes::fill(radius), zero = Lanes::fill(0);
-    Lanes w = zero, xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
-      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]),
-                  distance = Lanes::load(&support.distance[i]);
-      const Lanes weight = select(zero < distance, limit - distance, zero);
-      const Lanes wx = weight * x, wy = weight * y, wz = weight * z;
-      w = w + weight;
-      xx = xx + wx * x, xy = xy + wx * y, xz = xz + wx * z, yy = yy + wy * y, yz = yz + wy * z, zz = zz + wz * z;
-    }
-    weights = sum(w);
-    const double m01 = sum(xy), m02 = sum(xz), m12 = sum(yz);
-    moments << sum(xx), m01, m02, m01, sum(yy), m12, m02, m12, sum(zz);
-  });
-  moments /= weights;
+  moments << sums.xx, sums.xy, sums.xz, sums.xy, sums.yy, sums.yz, sums.xz, sums.yz, sums.zz;
+  moments /= sums.weights;
   if (!moments.allFinite()) return std::nullopt;                         // every vertex exactly at the rim
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);  // ascending eigenvalues
   const std::array<Eigen::Vector3d, 2> axes{solver.eigenvectors().col(2), solver.eigenvectors().col(0)};

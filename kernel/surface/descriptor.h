@@ -7,7 +7,7 @@
 #include "kernel/local_reference_frame.h"
 #include "kernel/parallel.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/vectorized.h"
+#include "kernel/columns.h"
 
 namespace corral {
 

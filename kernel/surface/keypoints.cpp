@@ -9,10 +9,16 @@
 
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/plane_fit.h"
 #include "kernel/surface/search/point_grid.h"
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/keypoints.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/surface/plane_fit-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr double kSmallestResponse = 1e-9;
@@ -34,13 +40,9 @@ class HarrisOperator {
         response_(grid.x().size(), 0.0) {}
 
   AlignedColumn run(const ParallelFor& parallel) {
-    parallel(block_count(grid_), [this](int block) {
-      vectorized([&](auto kind) { fit<typename decltype(kind)::Lanes>(block_of(block)); });
-    });
+    parallel(block_count(grid_), [this](int block) { fit(block_of(block)); });
     fits_.solve_all(parallel);
-    parallel(block_count(grid_), [this](int block) {
-      vectorized([&](auto kind) { respond<typename decltype(kind)::Lanes>(block_of(block)); });
-    });
+    parallel(block_count(grid_), [this](int block) { respond(block_of(block)); });
     return std::move(response_);
   }
 
@@ -53,14 +55,13 @@ class HarrisOperator {
     return {first, last};
   }
 
-  template <class Lanes>
-  CORRAL_INLINE void fit(const Block& block) {
+  HWY_FLATTEN void fit(const Block& block) {
     std::int64_t neighbors = 0;
     PackedSlots<3> places;
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
-      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
-        neighbors += fits_.fit<Lanes>(static_cast<std::size_t>(slot), grid_, places, squared_);
+        neighbors += fits_.fit(static_cast<std::size_t>(slot), grid_, places, squared_);
         if (neighbors > most_) count(neighbors);  // a crowd: to its end it would take long
       }
     }
@@ -77,19 +78,18 @@ class HarrisOperator {
                          "vertices share one place?)");
   }
 
-  template <class Lanes>
-  CORRAL_INLINE void respond(const Block& block) {
+  HWY_FLATTEN void respond(const Block& block) {
     PackedSlots<6> places;  // and normals
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
-      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
                             around_.end(cell));
       for (int i = grid_.begin(cell); i < grid_.end(cell); ++i) {
         const auto slot = static_cast<std::size_t>(i);
         const Lanes zero = Lanes::fill(0);
         Lanes xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
         const double *nx = places[3], *ny = places[4], *nz = places[5];
-        visit_within<Lanes>(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
-                            [&](auto inside, Lanes, Lanes, Lanes, int other) {
+        visit_within(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
+                            [&](auto inside, Lanes, Lanes, Lanes, int other) HWY_ATTR {
                               const Lanes a = select(inside, Lanes::load(nx + other), zero),
                                           b = select(inside, Lanes::load(ny + other), zero),
                                           c = select(inside, Lanes::load(nz + other), zero);
@@ -125,21 +125,18 @@ class LocalMaxima {
   LocalMaxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& response, double radius)
       : grid_(grid), around_(around), response_(response), squared_(radius * radius) {}
 
-  Indices find() const {
+  HWY_FLATTEN Indices find() const {
     Indices maxima;
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      for (int cell = 0; cell < grid_.cells(); ++cell) {
-        const int first = grid_.begin(cell), last = grid_.end(cell);
-        int top = first;
-        for (int slot = first; slot < last; ++slot)
-          if (at(slot) > at(top)) top = slot;
-        for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
-          if (at(slot) >= kSmallestResponse && !is_beaten(slot, top) &&
-              is_highest<Lanes>(slot, around_.begin(cell), around_.end(cell)))
-            maxima.push_back(grid_.row(slot));
-      }
-    });
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+      const int first = grid_.begin(cell), last = grid_.end(cell);
+      int top = first;
+      for (int slot = first; slot < last; ++slot)
+        if (at(slot) > at(top)) top = slot;
+      for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
+        if (at(slot) >= kSmallestResponse && !is_beaten(slot, top) &&
+            is_highest(slot, around_.begin(cell), around_.end(cell)))
+          maxima.push_back(grid_.row(slot));
+    }
     std::sort(maxima.begin(), maxima.end());
     return maxima;
   }
@@ -156,18 +153,16 @@ class LocalMaxima {
   }
 
   /// Whether no slot of some ranges beats one. The range of its own cell comes first: most are beaten there.
-  template <class Lanes>
-  CORRAL_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
+  HWY_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
     const SlotRange* const home = std::find_if(first, last, [&](const SlotRange& range) { return slot < range.end; });
-    if (beats<Lanes>(*home, slot)) return false;
+    if (beats(*home, slot)) return false;
     for (const SlotRange* range = first; range != last; ++range)
-      if (range != home && beats<Lanes>(*range, slot)) return false;
+      if (range != home && beats(*range, slot)) return false;
     return true;
   }
 
   /// Whether a slot of a range beats another one.
-  template <class Lanes>
-  CORRAL_INLINE bool beats(const SlotRange& range, int slot) const {
+  HWY_INLINE bool beats(const SlotRange& range, int slot) const {
     const auto own = static_cast<std::size_t>(slot);
     const Lanes response = Lanes::fill(response_[own]), x = Lanes::fill(grid_.x()[own]),
                 y = Lanes::fill(grid_.y()[own]), z = Lanes::fill(grid_.z()[own]), squared = Lanes::fill(squared_);
@@ -177,7 +172,7 @@ class LocalMaxima {
                   dz = Lanes::load(&grid_.z()[at]) - z;
       unsigned left = bits(response <= Lanes::load(&response_[at])) & bits(dx * dx + dy * dy + dz * dz <= squared);
       for (; left != 0; left &= left - 1)  // those behind the range count as well
-        if (is_beaten(slot, i + __builtin_ctz(left))) return true;
+        if (is_beaten(slot, i + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left)))) return true;
     }
     return false;
   }
@@ -188,13 +183,31 @@ class LocalMaxima {
   double squared_;
 };
 
+AlignedColumn respond(const PointGrid& grid, const CellNeighborhoods& around, double radius,
+                      const ParallelFor& parallel) {
+  return HarrisOperator(grid, around, radius).run(parallel);
+}
+
+Indices find_maxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& response,
+                    double radius) {
+  return LocalMaxima(grid, around, response, radius).find();
+}
+
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(respond);
+HWY_EXPORT(find_maxima);
 
 Eigen::VectorXd harris_response(const Points& vertices, double radius, const ParallelFor& parallel) {
   require_positive("harris_response", "radius", radius);
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
-  const AlignedColumn by_slot = HarrisOperator(grid, around, radius).run(parallel);
+  const AlignedColumn by_slot = HWY_DYNAMIC_DISPATCH(respond)(grid, around, radius, parallel);
   Eigen::VectorXd response(vertices.rows());
   for (int slot = 0; slot < grid.size(); ++slot) response(grid.row(slot)) = by_slot[static_cast<std::size_t>(slot)];
   return response;
@@ -208,8 +221,8 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
   Keypoints keypoints;
-  const AlignedColumn response = HarrisOperator(grid, around, radius).run(parallel);
-  keypoints.vertices = LocalMaxima(grid, around, response, radius).find();
+  const AlignedColumn response = HWY_DYNAMIC_DISPATCH(respond)(grid, around, radius, parallel);
+  keypoints.vertices = HWY_DYNAMIC_DISPATCH(find_maxima)(grid, around, response, radius);
   keypoints.candidates = static_cast<int>(keypoints.vertices.size());
   return keypoints;
 }
@@ -231,3 +244,4 @@ Keypoints detect_uniform(const Points& vertices, double resolution, double spaci
 }
 
 }  // namespace corral
+#endif

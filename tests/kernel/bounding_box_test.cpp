@@ -13,8 +13,8 @@ namespace {
 using testing::points_of;
 
 TEST(BoundingBox, HoldsThePointsAndNoMore) {
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     for (const int count : {1, 7, 8, 9, 100}) {
       const Points points = testing::uniform_points(count, static_cast<std::uint64_t>(count));
       const BoundingBox box = bounding_box(points);

@@ -113,16 +113,16 @@ TEST(SpatialOrder, WhatIsNotFiniteComesLast) {
   EXPECT_THAT(Indices(order.begin() + 4, order.end()), ElementsAre(1, 4));
 }
 
-TEST(SpatialOrder, ThreadsAndVectorLevelsDoNotShow) {
+TEST(SpatialOrder, ThreadsAndTargetsDoNotShow) {
   const Points points = testing::clustered_points(5000, 2);
   const Indices expected = spatial_order(points);
   EXPECT_EQ(spatial_order(points, testing::last_first), expected);
   EXPECT_EQ(spatial_order(points, testing::on_three_threads), expected);
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     for (const auto& set : testing::hard_point_sets()) {
       const Indices order = spatial_order(set.points);
-      const testing::ForcedLevel baseline(VectorLevel::Baseline);
+      const testing::ForcedTarget baseline(testing::available_targets().back());
       EXPECT_EQ(spatial_order(set.points), order) << set.name;
     }
   }

@@ -12,7 +12,6 @@
 
 #include "kernel/random.h"
 #include "kernel/surface/matching/feature_filter.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 namespace {
@@ -77,15 +76,13 @@ void in_threads(int count, const std::function<void(int)>& body) {
   for (std::thread& thread : threads) thread.join();
 }
 
-/// On every vector level, and in blocks of any order.
+/// On every target, and in blocks of any order.
 void expect_exact(const MatrixXd& source, const MatrixXd& target) {
   const NearestFeatures expected = reference_nearest(source, target);
-  const VectorLevel best = vector_level();
-  for (const VectorLevel level : {VectorLevel::Baseline, VectorLevel::Avx2, VectorLevel::Avx512}) {
-    force_vector_level(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     expect_equal(find_two_nearest(source, target), expected);
   }
-  force_vector_level(best);
   expect_equal(find_two_nearest(source, target, backwards), expected);
   expect_equal(find_two_nearest(source, target, in_threads), expected);
 }

@@ -188,12 +188,12 @@ TEST(NearestPoints, NothingHasNoNearest) {
   EXPECT_THAT(NearestTracker(none_finite).nearest(Points::Zero(1, 3), 9), ElementsAre(-1));
 }
 
-TEST(NearestPoints, EveryVectorLevelFindsTheSame) {
+TEST(NearestPoints, EveryTargetFindsTheSame) {
   const Points points = testing::clustered_points(2000, 8), queries = places_around(points, 0.01, 9);
   const PointTree tree(points);
   const Indices expected = by_brute_force(points, queries, 0.02);
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     EXPECT_EQ(NearestTracker(tree).nearest(queries, 0.02), expected);
   }
 }
