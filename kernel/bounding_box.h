@@ -18,6 +18,7 @@ struct BoundingBox {
 struct Extent {
   double low, high;
 };
+/// Plain form  tests/support/reference_columns.h
 Extent extent_of(const double* numbers, Eigen::Index count);
 
 /// Of no points: a box of no size at the origin. The points must be finite.
