@@ -64,7 +64,8 @@ void CompatibilityGraph::multiply(const Eigen::VectorXd& from, Eigen::VectorXd& 
 void CompatibilityGraph::round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const {
   const double total = numbers.cwiseAbs().sum();
   const double scale = total > 0 ? std::ldexp(1.0, std::clamp(30 - std::ilogb(total), -1000, 1000)) : 1;
-  Numbers whole(static_cast<std::size_t>(kBlockColumns * padded(blocks_of(size_), kBlocksTogether)), 0), sums(stride_, 0);
+  Numbers whole(static_cast<std::size_t>(kBlockColumns * padded(blocks_of(size_), kBlocksTogether)), 0),
+      sums(stride_, 0);
   for (int i = 0; i < size_; ++i) whole[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(numbers(i) * scale);
   numbers = Eigen::Map<const Eigen::Matrix<std::int32_t, -1, 1>>(whole.data(), size_).cast<double>() / scale;
   add_named({bytes_.data(), size_, static_cast<std::ptrdiff_t>(stride_), blocks_of(size_)}, whole.data(), sums.data());

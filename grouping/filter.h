@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "kernel/columns.h"
 #include "kernel/correspondence_set.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/columns.h"
 
 namespace corral {
 

@@ -91,7 +91,8 @@ HWY_FLATTEN void count_consistent(const ConsistencyFilter& filter, int* counts) 
   }
 }
 
-HWY_FLATTEN void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
+HWY_FLATTEN void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile],
+                                        int (&counts)[kPoseTile]) {
   const Columns columns(table);
   const int end = table.padded_rows();
   const Floats one = Floats::fill(1);
@@ -147,13 +148,11 @@ struct Similarity {
         possible_slope(Floats::fill(filter.possible_slope)),
         offset(Floats::fill(filter.offset)) {}
   HWY_INLINE auto certain(Floats lesser, Floats greater) const { return greater * certain_slope + offset <= lesser; }
-  HWY_INLINE auto possible(Floats lesser, Floats greater) const {
-    return greater * possible_slope <= lesser + offset;
-  }
+  HWY_INLINE auto possible(Floats lesser, Floats greater) const { return greater * possible_slope <= lesser + offset; }
 };
 
-HWY_FLATTEN void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,
-                    std::uint8_t* possible) {
+HWY_FLATTEN void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block,
+                                std::uint8_t* certain, std::uint8_t* possible) {
   const Columns columns(table);
   const int end = table.padded_rows(), first = 8 * block;
   const Similarity test(filter);
@@ -208,8 +207,8 @@ HWY_FLATTEN int mark_between(const float* numbers, int count, float first, float
   return below;
 }
 
-HWY_FLATTEN FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row, const float* squared,
-                       float limit, const float* trusted) {
+HWY_FLATTEN FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row,
+                                   const float* squared, float limit, const float* trusted) {
   const Columns columns(table);
   FilteredVotes votes;
   const Similarity test(filter);
@@ -229,8 +228,8 @@ HWY_FLATTEN FilteredVotes ask_near(const FilterTable& table, const SimilarityFil
   return votes;
 }
 
-HWY_FLATTEN FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter, const FilterTable& table, int row,
-                         const PoseFilter& pose) {
+HWY_FLATTEN FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter,
+                                     const FilterTable& table, int row, const PoseFilter& pose) {
   const Columns columns(voters), asking(table);
   FilteredVotes votes{voters.rows(), 0, 0};
   const Similarity test(filter);

@@ -16,21 +16,13 @@ struct LanePoint {
   Lanes x, y, z;
 };
 
-HWY_INLINE LanePoint operator+(const LanePoint& a, const LanePoint& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-HWY_INLINE LanePoint operator-(const LanePoint& a, const LanePoint& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-HWY_INLINE LanePoint operator*(Lanes factor, const LanePoint& a) {
-  return {factor * a.x, factor * a.y, factor * a.z};
-}
+HWY_INLINE LanePoint operator+(const LanePoint& a, const LanePoint& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE LanePoint operator-(const LanePoint& a, const LanePoint& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE LanePoint operator*(Lanes factor, const LanePoint& a) { return {factor * a.x, factor * a.y, factor * a.z}; }
 HWY_INLINE LanePoint operator/(const LanePoint& a, Lanes divisor) {
   return {a.x / divisor, a.y / divisor, a.z / divisor};
 }
-HWY_INLINE Lanes dot(const LanePoint& a, const LanePoint& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+HWY_INLINE Lanes dot(const LanePoint& a, const LanePoint& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 HWY_INLINE LanePoint cross(const LanePoint& a, const LanePoint& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

@@ -31,7 +31,8 @@ HWY_FLATTEN void agree(const NormalColumns& normals, const Eigen::Matrix3d& rota
   const Lanes side = Lanes::fill(sum(agreements) < 0 ? -1 : 1), least = Lanes::fill(least_cosine);
   for (std::size_t i = 0; i < normals.size; i += kLanes) {
     turn(i);
-    select(least <= side * Lanes::load(normals.agreement + i), Lanes::load(normals.is_pair + i), zero).store(normals.is_pair + i);
+    select(least <= side * Lanes::load(normals.agreement + i), Lanes::load(normals.is_pair + i), zero)
+        .store(normals.is_pair + i);
     Lanes mean[3], squared = zero;
     for (int axis = 0; axis < 3; ++axis) {
       mean[axis] = Lanes::load(normals.target[axis] + i) + side * turned[axis];
@@ -95,8 +96,7 @@ HWY_INLINE PairLanes eight_pairs(const PairColumns& columns, std::size_t first) 
     pairs.m[axis] = select(zero < pairs.one, m * scale, zero);
     pairs.d[axis] = select(zero < pairs.one, d * scale, zero);
     pairs.n[axis] = zero;
-    if (kWithNormals)
-      pairs.n[axis] = select(zero < pairs.one, Lanes::load(&columns.normals[axis][first]), zero);
+    if (kWithNormals) pairs.n[axis] = select(zero < pairs.one, Lanes::load(&columns.normals[axis][first]), zero);
   }
   return pairs;
 }

@@ -12,10 +12,10 @@ namespace corral {
 /// Columns of pairs; the normals are those of the target.
 struct NormalColumns {
   const double* source[3];
-  double* target[3];   ///< in; out: the mean of both
-  double* agreement;   ///< out: the cosine
-  double* is_pair;     ///< 1 or 0
-  std::size_t size;    ///< padded
+  double* target[3];  ///< in; out: the mean of both
+  double* agreement;  ///< out: the cosine
+  double* is_pair;    ///< 1 or 0
+  std::size_t size;   ///< padded
 };
 
 /// Leaves only pairs whose normals agree, the source's turned. Where most look against each other, one of the surfaces is

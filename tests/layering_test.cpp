@@ -86,9 +86,7 @@ std::vector<Include> includes() {
 bool is_header(const std::string& file) { return fs::path(file).extension() == ".h"; }
 
 /// Compiled once for each target of Highway, and only in sources.
-bool is_for_targets(const std::string& file) {
-  return std::regex_search(file, std::regex("-inl\\.h$"));
-}
+bool is_for_targets(const std::string& file) { return std::regex_search(file, std::regex("-inl\\.h$")); }
 
 TEST(Layering, RoomsIncludeOnlyWhatThePlanAllows) {
   int checked = 0;
@@ -139,7 +137,8 @@ TEST(Layering, HeadersForTargetsStayInSources) {
   for (const Include& include : includes()) {
     if (!include.quoted || !is_for_targets(include.name)) continue;
     ++checked;
-    EXPECT_TRUE(!is_header(include.file) || is_for_targets(include.file)) << include.file << " includes " << include.name;
+    EXPECT_TRUE(!is_header(include.file) || is_for_targets(include.file))
+        << include.file << " includes " << include.name;
   }
   EXPECT_GT(checked, 10);
 }
@@ -150,7 +149,8 @@ TEST(Layering, NoAssemblyAttributesOrBuiltins) {
   for (const std::string& file : source_files()) {
     std::smatch match;
     const std::string text = read(kRoot / file);
-    if (file != "tests/layering_test.cpp") EXPECT_FALSE(std::regex_search(text, match, own)) << file << ": " << match.str();
+    if (file != "tests/layering_test.cpp")
+      EXPECT_FALSE(std::regex_search(text, match, own)) << file << ": " << match.str();
   }
 }
 

@@ -96,7 +96,8 @@ class SupportFinder {
   }
 
   void collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support) const {
-    const SlotColumns columns{{grid_.x().data(), grid_.y().data(), grid_.z().data(), nx_.data(), ny_.data(), nz_.data()}};
+    const SlotColumns columns{
+        {grid_.x().data(), grid_.y().data(), grid_.z().data(), nx_.data(), ny_.data(), nz_.data()}};
     collect_support(columns, slot, squared_, ranges, support);
   }
 

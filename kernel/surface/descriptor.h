@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "kernel/columns.h"
 #include "kernel/local_reference_frame.h"
 #include "kernel/parallel.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/columns.h"
 
 namespace corral {
 

@@ -82,20 +82,20 @@ class HarrisOperator {
     PackedSlots<6> places;  // and normals
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
       places.collect({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
-                            around_.end(cell));
+                     around_.end(cell));
       for (int i = grid_.begin(cell); i < grid_.end(cell); ++i) {
         const auto slot = static_cast<std::size_t>(i);
         const Lanes zero = Lanes::fill(0);
         Lanes xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
         const double *nx = places[3], *ny = places[4], *nz = places[5];
         visit_within(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
-                            [&](auto inside, Lanes, Lanes, Lanes, int other) HWY_ATTR {
-                              const Lanes a = select(inside, Lanes::load(nx + other), zero),
-                                          b = select(inside, Lanes::load(ny + other), zero),
-                                          c = select(inside, Lanes::load(nz + other), zero);
-                              xx = xx + a * a, xy = xy + a * b, xz = xz + a * c;
-                              yy = yy + b * b, yz = yz + b * c, zz = zz + c * c;
-                            });
+                     [&](auto inside, Lanes, Lanes, Lanes, int other) HWY_ATTR {
+                       const Lanes a = select(inside, Lanes::load(nx + other), zero),
+                                   b = select(inside, Lanes::load(ny + other), zero),
+                                   c = select(inside, Lanes::load(nz + other), zero);
+                       xx = xx + a * a, xy = xy + a * b, xz = xz + a * c;
+                       yy = yy + b * b, yz = yz + b * c, zz = zz + c * c;
+                     });
         response_[slot] = determinant({sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)});
       }
     }

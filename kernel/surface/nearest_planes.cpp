@@ -129,7 +129,7 @@ class Worker {
   Fits& fits_;
   Crowd crowd_;
   Shortlist shortlist_;
-  Indices chosen_;            // places in the crowd, ascending
+  Indices chosen_;           // places in the crowd, ascending
   AlignedColumn x_, y_, z_;  // of those
   std::vector<Candidate> candidates_;
   float hint_ = 1;  // where to look first, in sides of a cell; what is found does not depend on it

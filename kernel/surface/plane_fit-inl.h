@@ -86,13 +86,13 @@ struct PlaneFits {
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;
     visit_within(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
-                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
-                          dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
-                          n = n + select(inside, one, zero);
-                          sx = sx + dx, sy = sy + dy, sz = sz + dz;
-                          sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
-                          syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
-                        });
+                 [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
+                   dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
+                   n = n + select(inside, one, zero);
+                   sx = sx + dx, sy = sy + dy, sz = sz + dz;
+                   sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
+                   syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
+                 });
     const Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
     put(slot, sums);
     return static_cast<int>(sums.count);
@@ -101,7 +101,7 @@ struct PlaneFits {
   /// The moments of so many chosen points about one of them; the columns go on with that one up to a multiple of eight.
   /// Returns the squared distance of the nearest in another place, infinite if there is none.
   HWY_INLINE double fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
-                                  double own_x, double own_y, double own_z) {
+                               double own_x, double own_y, double own_z) {
     const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z),
                 none = Lanes::fill(std::numeric_limits<double>::infinity());
     Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero,
@@ -147,8 +147,8 @@ struct PlaneFits {
   HWY_FLATTEN void solve(std::size_t first, std::size_t last) {
     using Four = Pair<Pair<Lanes>>;  // four chains of divisions and roots at once hide their latency
     for (std::size_t i = first; i < last; i += Four::kCount) {
-      const SymmetricEigen<Four> eigen({Four::load(&xx[i]), Four::load(&xy[i]), Four::load(&xz[i]),
-                                         Four::load(&yy[i]), Four::load(&yz[i]), Four::load(&zz[i])});
+      const SymmetricEigen<Four> eigen({Four::load(&xx[i]), Four::load(&xy[i]), Four::load(&xz[i]), Four::load(&yy[i]),
+                                        Four::load(&yz[i]), Four::load(&zz[i])});
       const Four &a = eigen.value[0], &b = eigen.value[1], &c = eigen.value[2];
       const Four low_ab = select(a <= b, a, b), high_ab = select(a <= b, b, a);
       const Four largest = select(high_ab <= c, c, high_ab);

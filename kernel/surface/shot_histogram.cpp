@@ -145,8 +145,8 @@ class Voter {
     return axes_[axis][0] * x + axes_[axis][1] * y + axes_[axis][2] * z;
   }
   /// `share`: what each axis takes from the own bin, `given`: what of it the bin beside gets.
-  HWY_INLINE void store_shares(const Lanes (&share)[Votes::kAxes], const Lanes (&given)[Votes::kAxes],
-                                  std::size_t at, Votes& votes) const {
+  HWY_INLINE void store_shares(const Lanes (&share)[Votes::kAxes], const Lanes (&given)[Votes::kAxes], std::size_t at,
+                               Votes& votes) const {
     for (int axis = 0; axis < Votes::kAxes; ++axis) given[axis].store(&votes.share[axis][at]);
     (fill(4) - ((share[0] + share[1]) + (share[2] + share[3]))).store(&votes.rest[at]);
     if (!is_product_) return;
@@ -210,7 +210,7 @@ HWY_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histogram
 }
 
 HWY_FLATTEN std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame,
-                                                           double radius, const std::string& form) {
+                                                          double radius, const std::string& form) {
   Histograms histograms;
   const auto add = form == "product" ? add_products : add_one_axis_at_a_time;
   Votes votes;

@@ -16,11 +16,11 @@ HWY_FLATTEN double count_pairs(const PointGrid& grid, const CellNeighborhoods& a
   PackedSlots<3> places;
   for (int cell = 0; cell < grid.cells(); ++cell) {
     places.collect({&grid.x(), &grid.y(), &grid.z()}, around.begin(cell), around.end(cell));
-    for (auto slot = static_cast<std::size_t>(grid.begin(cell)); slot < static_cast<std::size_t>(grid.end(cell)); ++slot)
+    for (auto slot = static_cast<std::size_t>(grid.begin(cell)); slot < static_cast<std::size_t>(grid.end(cell));
+         ++slot)
       visit_within(places, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
-                   [&](auto inside, Lanes, Lanes, Lanes, int) HWY_ATTR {
-                     count = count + select(inside, Lanes::fill(1), Lanes::fill(0));
-                   });
+                   [&](auto inside, Lanes, Lanes, Lanes, int)
+                       HWY_ATTR { count = count + select(inside, Lanes::fill(1), Lanes::fill(0)); });
   }
   return sum(count);
 }

@@ -19,10 +19,10 @@ namespace {
 
 using testing::available_targets;
 using testing::ForcedTarget;
-using testing::target_name;
 using testing::harsh_table;
 using testing::scaled;
 using testing::synthetic;
+using testing::target_name;
 
 /// Far from the origin, tiny, huge, with outliers, of one place, beyond what floats hold.
 std::vector<CorrespondenceSet> tables() {

@@ -25,19 +25,20 @@ std::int64_t target() { return HWY_TARGET; }
 
 /// What lanes make of two times eight numbers, one behind the other.
 void compute(const double* x, const double* y, double* results) {
-  const Lanes a = Lanes::load(x), b = Lanes::load(y), all[] = {a + b,
-                                                               a - b,
-                                                               a * b,
-                                                               a / b,
-                                                               square_root(a),
-                                                               magnitude(a) + Lanes::fill(0),
-                                                               select(a < b, a, b + b),
-                                                               select(a <= b, a, b + b),
-                                                               select(a == b, a, b + b),
-                                                               smaller(a, b),
-                                                               larger(a, b),
-                                                               a * b - b * a + a * a - b,
-                                                               Lanes::fill(y[3])};
+  const Lanes a = Lanes::load(x), b = Lanes::load(y),
+              all[] = {a + b,
+                       a - b,
+                       a * b,
+                       a / b,
+                       square_root(a),
+                       magnitude(a) + Lanes::fill(0),
+                       select(a < b, a, b + b),
+                       select(a <= b, a, b + b),
+                       select(a == b, a, b + b),
+                       smaller(a, b),
+                       larger(a, b),
+                       a * b - b * a + a * a - b,
+                       Lanes::fill(y[3])};
   for (const Lanes& each : all) each.store(results), results += kLanes;
 }
 
@@ -114,7 +115,8 @@ const Eight kA{0.1, -2.5, 1e300, 3e-310, -0.0, 7, -1e-17, 1.0 / 3};
 const Eight kB{0.3, -2.5, 1e300, -5e-324, 0.0, -11, 1, 3.0};
 const Eight kOdd{kInfinity, -kInfinity, std::nan(""), 0.0, -0.0, 1, std::nan(""), 5};
 const Eight kOther{1, -kInfinity, 2, -0.0, 0.0, std::nan(""), std::nan(""), kInfinity};
-const Eight kDigits{0.1, 1 + 0x1p-30, 1.0 / 3, 1e8 + 0.1, -0.7, 3.3, 1e-9, 17.17};  // of products that a fused one keeps
+const Eight kDigits{0.1,  1 + 0x1p-30, 1.0 / 3, 1e8 + 0.1,
+                    -0.7, 3.3,         1e-9,    17.17};  // of products that a fused one keeps
 
 TEST(Lanes, EveryTargetRunsItsOwnCode) {
   for (const std::int64_t each : available_targets()) {

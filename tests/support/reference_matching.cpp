@@ -5,7 +5,8 @@
 
 namespace corral::testing {
 
-double reference_distance(const Eigen::MatrixXd& source, Eigen::Index i, const Eigen::MatrixXd& target, Eigen::Index j) {
+double reference_distance(const Eigen::MatrixXd& source, Eigen::Index i, const Eigen::MatrixXd& target,
+                          Eigen::Index j) {
   double sums[16] = {};
   for (Eigen::Index row = 0; row < source.rows(); ++row) {
     const double difference = source(row, i) - target(row, j);

@@ -29,21 +29,21 @@ struct TwoNearest {
 /// A bound that falls as nearer columns are found: scores below it belong to columns that are no nearer.
 struct ScoreBound {
   Eigen::Index dimension = 0;
-  double scale = 1;                ///< of the projection
-  double own_squared = 0;          ///< length of the row of the source feature
-  double errors = 0;               ///< of both sides
-  double largest_squared = 0;      ///< length of the rows of all targets
-  int steps = 0;                   ///< products in a score
+  double scale = 1;            ///< of the projection
+  double own_squared = 0;      ///< length of the row of the source feature
+  double errors = 0;           ///< of both sides
+  double largest_squared = 0;  ///< length of the rows of all targets
+  int steps = 0;               ///< products in a score
   float least(double squared) const;
 };
 
 /// Columns that are offered.
 struct OfferedColumns {
-  const double* first;    ///< of the matrix
-  Eigen::Index rows;      ///< of it
-  const int* chosen;      ///< which are offered, so many
+  const double* first;  ///< of the matrix
+  Eigen::Index rows;    ///< of it
+  const int* chosen;    ///< which are offered, so many
   int count;
-  int ahead;              ///< memory of that many more is asked for
+  int ahead;  ///< memory of that many more is asked for
 };
 
 /// Offers all of them.

@@ -152,7 +152,8 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
     std::fill_n(query.fine.begin(), query.count, 0.F);
     return;
   }
-  offer(source_.col(first + row).data(), {target_.data(), target_.rows(), query.seeds.data(), kSeeds, 0}, query.nearest);
+  offer(source_.col(first + row).data(), {target_.data(), target_.rows(), query.seeds.data(), kSeeds, 0},
+        query.nearest);
   const double squared = query.nearest.second_squared;
   const float coarse = bound(own.coarse_squared[row], own.error[row], kCoarseNumbers).least(squared);
   const float fine = bound(own.fine_squared[row], own.error[row], kFineNumbers).least(squared);

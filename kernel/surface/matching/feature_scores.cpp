@@ -21,8 +21,7 @@ struct Sums {
   Floats at[kRows][kWidth];
 };
 
-HWY_INLINE void multiply(const float* panel, int steps, const float* rows, std::ptrdiff_t stride,
-                            Sums& out) {
+HWY_INLINE void multiply(const float* panel, int steps, const float* rows, std::ptrdiff_t stride, Sums& out) {
   Floats sums[kRows][kWidth];
   for (int row = 0; row < kRows; ++row)
     for (int i = 0; i < kWidth; ++i) sums[row][i] = Floats::fill(0);
@@ -59,7 +58,8 @@ HWY_FLATTEN void add_products(const float* panel, int steps, const FloatRows& ro
   });
 }
 
-HWY_FLATTEN void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores, float* tops) {
+HWY_FLATTEN void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores,
+                               float* tops) {
   for (int panel = 0; panel < panels; ++panel) {
     const float* columns = first_panel + static_cast<std::ptrdiff_t>(panel) * steps * kPanelColumns;
     for_each_tile(columns, steps, rows, [&](int row, int column, const Sums& tile) HWY_ATTR {

@@ -15,9 +15,9 @@
 namespace corral {
 namespace {
 
-constexpr int kSliceBits = 5, kMostSliceBits = 6;           // a cell has at least 32 slices along x
-constexpr int kDigitBits = 11;                              // of the sort of the keys
-constexpr double kMostCells = 5e17;                         // keys with their slices are 63 bits
+constexpr int kSliceBits = 5, kMostSliceBits = 6;  // a cell has at least 32 slices along x
+constexpr int kDigitBits = 11;                     // of the sort of the keys
+constexpr double kMostCells = 5e17;                // keys with their slices are 63 bits
 
 /// The cell of every point as one number, ascending by z, then y, then x.
 struct CellKeys {
@@ -57,14 +57,16 @@ std::optional<CellKeys> combine(const std::array<std::int64_t, 3>& largest, std:
   if (!(product <= kMostCells)) return std::nullopt;
   CellKeys result{std::vector<std::int64_t>(count), steps[0], steps[0] * steps[1]};
   for (std::size_t i = 0; i < count; ++i)
-    result.keys[i] =
-        (cell(2, i) + kCellMargin) * result.layer_step + (cell(1, i) + kCellMargin) * result.row_step + cell(0, i) + kCellMargin;
+    result.keys[i] = (cell(2, i) + kCellMargin) * result.layer_step + (cell(1, i) + kCellMargin) * result.row_step +
+                     cell(0, i) + kCellMargin;
   return result;
 }
 
 /// combine() of the cells along the axes as they are, where all keys are whole numbers that doubles can hold.
 std::optional<CellKeys> combine_on_lanes(const std::array<CellAxis, 3>& axes, std::size_t count) {
-  const auto cells = [&](std::size_t axis) { return std::floor(axes[axis].place(axes[axis].last)) + 1 + 2 * kCellMargin; };
+  const auto cells = [&](std::size_t axis) {
+    return std::floor(axes[axis].place(axes[axis].last)) + 1 + 2 * kCellMargin;
+  };
   const double row_step = cells(0), layer_step = row_step * cells(1);
   if (!(layer_step * cells(2) <= kMostWhole)) return std::nullopt;
   CellKeys result{std::vector<std::int64_t>(count), static_cast<std::int64_t>(row_step),
@@ -86,7 +88,7 @@ CellKeys number_cells(const Points& points, const BoundingBox& box, double& side
   const auto count = static_cast<std::size_t>(points.rows());
   for (;; side *= 2) {
     const std::array<CellAxis, 3> axes{axis_of(points, box, 0, side), axis_of(points, box, 1, side),
-                                   axis_of(points, box, 2, side)};
+                                       axis_of(points, box, 2, side)};
     if (auto fast = combine_on_lanes(axes, count)) return *std::move(fast);
     const auto direct =
         combine({axes[0].cell(box.high(0)), axes[1].cell(box.high(1)), axes[2].cell(box.high(2))}, count,

@@ -11,8 +11,9 @@ namespace corral {
 
 // The numbers of cells, eight points at a time. Only sources include this.
 
-constexpr double kMostWhole = 0x1p51;                          ///< whole numbers that doubles hold, and some to spare
-constexpr std::int64_t kCellMargin = PointGrid::kLargestReach;  ///< empty cells around, so that no row runs into the next
+constexpr double kMostWhole = 0x1p51;  ///< whole numbers that doubles hold, and some to spare
+constexpr std::int64_t kCellMargin =
+    PointGrid::kLargestReach;  ///< empty cells around, so that no row runs into the next
 
 /// The points and cells along one axis.
 struct CellAxis {

@@ -4,10 +4,10 @@
 #include <map>
 #include <vector>
 
+#include "kernel/columns.h"
 #include "kernel/parallel.h"
 #include "kernel/point_pairs.h"
 #include "kernel/types.h"
-#include "kernel/columns.h"
 
 namespace corral {
 

@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLargest = std::numeric_limits<double>::max();
-constexpr double kRounding = 1e-11;   // of a few sums and roots, generously
-constexpr double kSlack = 1.25;       // of the limit, so that queries just beyond it can move without a search
-constexpr int kDeepest = 12;          // levels of eight entries: more than there are row numbers
+constexpr double kRounding = 1e-11;  // of a few sums and roots, generously
+constexpr double kSlack = 1.25;      // of the limit, so that queries just beyond it can move without a search
+constexpr int kDeepest = 12;         // levels of eight entries: more than there are row numbers
 
 /// Calls visit(lane) for the lanes whose bits are set.
 template <class Visit>
@@ -74,7 +74,7 @@ struct Search {
 
   /// Puts the entries of a node that are near enough on top of those that wait, the nearest last.
   HWY_INLINE void unfold(const PointTree& tree, const PointTree::Node& node, const Lanes (&low)[3],
-                            const Lanes (&high)[3], double limit, Visit* waiting, int& size) const {
+                         const Lanes (&high)[3], double limit, Visit* waiting, int& size) const {
     // Rounding is monotonic: the computed distance of two boxes is never above that of points in them.
     const auto gap = [&](int axis) HWY_ATTR {
       return larger(Lanes::fill(0),

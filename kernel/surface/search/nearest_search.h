@@ -17,7 +17,10 @@ struct FollowedPoints : PointPairs {
   AlignedColumn clearance;  // all points but the nearest are at least this far away; 0: nothing is known
   Indices order, nearest;   // of those who ask by row
 
-  explicit FollowedPoints(std::size_t size) : row(size, std::numeric_limits<double>::infinity()), second(size, std::numeric_limits<double>::infinity()), clearance(size, 0) {
+  explicit FollowedPoints(std::size_t size)
+      : row(size, std::numeric_limits<double>::infinity()),
+        second(size, std::numeric_limits<double>::infinity()),
+        clearance(size, 0) {
     target_rows.resize(size);
     for (int axis = 0; axis < 3; ++axis) {
       source[axis].assign(size, std::numeric_limits<double>::infinity());
@@ -28,6 +31,7 @@ struct FollowedPoints : PointPairs {
 };
 
 /// Finds the partners of the places first .. last - 1, in whole registers, where it is not sure that they are as before.
-void search_partners(const PointTree& tree, FollowedPoints& followed, std::size_t first, std::size_t last, double limit);
+void search_partners(const PointTree& tree, FollowedPoints& followed, std::size_t first, std::size_t last,
+                     double limit);
 
 }  // namespace corral

@@ -24,8 +24,7 @@ class PackedSlots {
   int size() const { return size_; }
   const double* operator[](int column) const { return columns_[column].data(); }
 
-  HWY_INLINE void collect(const AlignedColumn* const (&from)[kColumns], const SlotRange* first,
-                             const SlotRange* last) {
+  HWY_INLINE void collect(const AlignedColumn* const (&from)[kColumns], const SlotRange* first, const SlotRange* last) {
     std::size_t count = 0;
     for (const SlotRange* range = first; range != last; ++range)
       count += static_cast<std::size_t>(range->end - range->begin);
@@ -54,7 +53,7 @@ class PackedSlots {
 /// is infinitely far, as the padding is, lies within no distance.
 template <int kColumns, class Visit>
 HWY_INLINE void visit_within(const PackedSlots<kColumns>& packed, double x, double y, double z, double squared,
-                                const Visit& visit) {
+                             const Visit& visit) {
   const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z),
               limit = Lanes::fill(std::min(squared, std::numeric_limits<double>::max()));
   const double *xs = packed[0], *ys = packed[1], *zs = packed[2];

@@ -110,7 +110,8 @@ Eigen::Array3d PointGrid::within_cell(int slot) const {
 
 AlignedColumn PointGrid::from_faces() const {
   AlignedColumn shares(x_.size(), 0.0);
-  const CellAxis axes[] = {{x_.data(), corner_.x(), side_}, {y_.data(), corner_.y(), side_}, {z_.data(), corner_.z(), side_}};
+  const CellAxis axes[] = {
+      {x_.data(), corner_.x(), side_}, {y_.data(), corner_.y(), side_}, {z_.data(), corner_.z(), side_}};
   measure_from_faces(axes, size(), shares.data());
   return shares;
 }

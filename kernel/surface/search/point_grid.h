@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "kernel/bounding_box.h"
-#include "kernel/surface/mesh/mesh.h"
 #include "kernel/columns.h"
+#include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 
@@ -60,7 +60,7 @@ class PointGrid {
   Eigen::Array3d within_cell(int slot) const;  // 0 .. 1 along each axis
 
   double side_;
-  double rounding_ = 0;       // of the difference of two places among the cells, mesh units
+  double rounding_ = 0;  // of the difference of two places among the cells, mesh units
   Eigen::RowVector3d corner_;
   std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
   std::vector<int> rows_;

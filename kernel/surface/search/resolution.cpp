@@ -23,10 +23,10 @@ HWY_INLINE double nearest_other(const PointGrid& grid, const PackedSlots<3>& aro
   const Lanes none = Lanes::fill(kInfinity), zero = Lanes::fill(0);
   Lanes nearest = none;
   visit_within(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
-                      [&](auto, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
-                        const Lanes squared = dx * dx + dy * dy + dz * dz;
-                        nearest = smaller(nearest, select(zero < squared, squared, none));
-                      });
+               [&](auto, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
+                 const Lanes squared = dx * dx + dy * dy + dz * dz;
+                 nearest = smaller(nearest, select(zero < squared, squared, none));
+               });
   return smallest(nearest);
 }
 

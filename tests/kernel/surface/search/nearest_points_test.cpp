@@ -11,9 +11,9 @@
 #include "kernel/random.h"
 #include "kernel/rigid_transform.h"
 #include "tests/support/execution.h"
-#include "tests/support/reference_surface.h"
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
+#include "tests/support/reference_surface.h"
 
 namespace corral {
 namespace {
@@ -45,7 +45,9 @@ TEST(NearestPoints, AgreeWithBruteForceOnHardSets) {
     if (set.points.rows() == 0) continue;
     const Points queries = places_around(set.points, set.unit, 1);
     for (const double limit : {0.0, 0.4 * set.unit, 1.0 * set.unit, 30 * set.unit, kInfinity})
-      EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), testing::reference_nearest_rows(set.points, queries, limit)) << limit;
+      EXPECT_EQ(NearestTracker(tree).nearest(queries, limit),
+                testing::reference_nearest_rows(set.points, queries, limit))
+          << limit;
   }
 }
 
@@ -53,7 +55,8 @@ TEST(NearestPoints, AgreeWithBruteForceOnManyPoints) {
   const Points points = testing::uniform_points(5000, 2), queries = testing::uniform_points(3000, 3);
   const PointTree tree(points);
   for (const double limit : {0.02, 0.1, kInfinity})
-    EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), testing::reference_nearest_rows(points, queries, limit)) << limit;
+    EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), testing::reference_nearest_rows(points, queries, limit))
+        << limit;
 }
 
 /// Middles of lattice cells: eight points tie exactly, others after a step to a face or an edge.
