@@ -4,23 +4,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "kernel/vectorized.h"
+#include "grouping/column_loops.h"
 
 namespace corral {
 
 std::vector<double> feature_ratios(const CorrespondenceSet& matches) {
-  const double *const d1 = matches.feature_distance.data(), *const d2 = matches.second_feature_distance.data();
-  const auto count = static_cast<std::size_t>(matches.size()), whole = count - count % kLanes;
-  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> ratios(count);
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (std::size_t row = 0; row < whole; row += kLanes) {
-      const Lanes second = Lanes::load(d2 + row);
-      select(Lanes::fill(0) < second, Lanes::load(d1 + row) / second, Lanes::fill(kAbsent)).store(&ratios[row]);
-    }
-  });
-  for (std::size_t row = whole; row < count; ++row) ratios[row] = d2[row] > 0 ? d1[row] / d2[row] : kAbsent;
+  std::vector<double> ratios(static_cast<std::size_t>(matches.size()));
+  divide_columns(matches.feature_distance.data(), matches.second_feature_distance.data(), ratios.size(), ratios.data());
   return ratios;
 }
 

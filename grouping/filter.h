@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
+#include "kernel/columns.h"
 #include "kernel/correspondence_set.h"
 #include "kernel/rigid_transform.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 
@@ -20,7 +20,7 @@ namespace corral {
 //   certain    true only where the comparison of doubles is certainly true
 //
 // What is possible but not certain is decided again in double, and so is every count of possible cases that could change
-// the answer of the method. Selections are therefore those of the double definition, on every vector level.
+// the answer of the method. Selections are therefore those of the double definition, on every machine.
 //
 // The proof rests on one bound. A FilterTable holds the points in a unit in which no coordinate exceeds 1, each rounded
 // once: an error of at most u = 2^-24. A difference of two coordinates is then off by at most 4 u, a vector by 4 sqrt(3) u,

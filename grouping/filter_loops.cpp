@@ -4,23 +4,28 @@
 
 #include <limits>
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "grouping/filter_loops.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 /// A point in every lane: sixteen of a column, or one repeated.
-template <class Floats>
 struct Point {
   Floats x, y, z;
-  static CORRAL_INLINE Point load(const float* const (&columns)[3], int row) {
+  static HWY_INLINE Point load(const float* const (&columns)[3], int row) {
     return {Floats::load(columns[0] + row), Floats::load(columns[1] + row), Floats::load(columns[2] + row)};
   }
-  static CORRAL_INLINE Point fill(const float* const (&columns)[3], int row) {
+  static HWY_INLINE Point fill(const float* const (&columns)[3], int row) {
     return {Floats::fill(columns[0][row]), Floats::fill(columns[1][row]), Floats::fill(columns[2][row])};
   }
 };
 
-template <class Floats>
-CORRAL_INLINE Floats squared_distance(const Point<Floats>& a, const Point<Floats>& b) {
+HWY_INLINE Floats squared_distance(const Point& a, const Point& b) {
   const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
   return x * x + y * y + z * z;
 }
@@ -36,32 +41,26 @@ struct Columns {
 };
 
 /// Adds 1 in the lanes where a comparison holds.
-template <class Mask, class Floats>
-CORRAL_INLINE Floats counted(Mask mask, Floats count, Floats one) {
+template <class Mask>
+HWY_INLINE Floats counted(Mask mask, Floats count, Floats one) {
   return select(mask, count + one, count);
 }
 
-/// The sum of whole numbers; their order does not matter.
-template <class Floats>
-CORRAL_INLINE int total(Floats counts) {
-  float quarters[4];
-  counts.folded().folded().store(quarters);
-  return static_cast<int>((quarters[0] + quarters[1]) + (quarters[2] + quarters[3]));
-}
+/// The sum of whole numbers.
+HWY_INLINE int total(Floats counts) { return static_cast<int>(sum(counts)); }
 
 /// Rows whose comparisons with one other row are made together.
-template <class Floats>
 struct ConsistencyLanes {
-  Point<Floats> p, q;
+  Point p, q;
   Floats p_square, q_square;
 
-  static CORRAL_INLINE ConsistencyLanes load(const ConsistencyFilter& filter, const Columns& columns, int first) {
-    return {Point<Floats>::load(columns.source, first), Point<Floats>::load(columns.target, first),
+  static HWY_INLINE ConsistencyLanes load(const ConsistencyFilter& filter, const Columns& columns, int first) {
+    return {Point::load(columns.source, first), Point::load(columns.target, first),
             Floats::load(filter.source_square() + first), Floats::load(filter.target_square() + first)};
   }
 
-  CORRAL_INLINE auto possible(const ConsistencyFilter::Row& row) const {
-    const auto all = [](float value) { return Floats::fill(value); };
+  HWY_INLINE auto possible(const ConsistencyFilter::Row& row) const {
+    const auto all = [](float value) HWY_ATTR { return Floats::fill(value); };
     const auto &s = row.source, &t = row.target;
     const Floats a = all(s[0]) * p.x + (all(s[1]) * p.y + (all(s[2]) * p.z + p_square));
     const Floats b = all(t[0]) * q.x + (all(t[1]) * q.y + (all(t[2]) * q.z + q_square));
@@ -70,227 +69,249 @@ struct ConsistencyLanes {
   }
 };
 
-}  // namespace
-
-void count_consistent(const ConsistencyFilter& filter, int* counts) {
+HWY_FLATTEN void count_consistent(const ConsistencyFilter& filter, int* counts) {
   const Columns columns(filter);
   constexpr int kGroup = ConsistencyFilter::kGroup;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats one = Floats::fill(1);
-    for (int first = 0; first < filter.padded_rows(); first += kGroup) {
-      const auto low = ConsistencyLanes<Floats>::load(filter, columns, first),
-                 high = ConsistencyLanes<Floats>::load(filter, columns, first + kFloatLanes);
-      Floats of_low = Floats::fill(0), of_high = of_low;
-      // Every pair once: a group against all rows before it, counted on both sides, and against itself.
-      for (int i = 0; i < first; ++i) {
-        const auto in_low = low.possible(filter.row(i)), in_high = high.possible(filter.row(i));
-        of_low = counted(in_low, of_low, one), of_high = counted(in_high, of_high, one);
-        counts[i] += __builtin_popcount(bits(in_low) | bits(in_high) << kFloatLanes);
-      }
-      for (int i = first; i < first + kGroup; ++i) {
-        of_low = counted(low.possible(filter.row(i)), of_low, one);
-        of_high = counted(high.possible(filter.row(i)), of_high, one);
-      }
-      of_low.store(counts + first), of_high.store(counts + first + kFloatLanes);
+  const Floats one = Floats::fill(1);
+  for (int first = 0; first < filter.padded_rows(); first += kGroup) {
+    const auto low = ConsistencyLanes::load(filter, columns, first),
+               high = ConsistencyLanes::load(filter, columns, first + kFloatLanes);
+    Floats of_low = Floats::fill(0), of_high = of_low;
+    // Every pair once: a group against all rows before it, counted on both sides, and against itself.
+    for (int i = 0; i < first; ++i) {
+      const auto in_low = low.possible(filter.row(i)), in_high = high.possible(filter.row(i));
+      of_low = counted(in_low, of_low, one), of_high = counted(in_high, of_high, one);
+      counts[i] += static_cast<int>(hwy::PopCount(bits(in_low) | bits(in_high) << kFloatLanes));
     }
-  });
+    for (int i = first; i < first + kGroup; ++i) {
+      of_low = counted(low.possible(filter.row(i)), of_low, one);
+      of_high = counted(high.possible(filter.row(i)), of_high, one);
+    }
+    of_low.store(counts + first), of_high.store(counts + first + kFloatLanes);
+  }
 }
 
-void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
+HWY_FLATTEN void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile],
+                                        int (&counts)[kPoseTile]) {
   const Columns columns(table);
   const int end = table.padded_rows();
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats one = Floats::fill(1);
-    Floats r[kPoseTile][3], t[kPoseTile], reach[kPoseTile], count[kPoseTile];
+  const Floats one = Floats::fill(1);
+  Floats r[kPoseTile][3], t[kPoseTile], reach[kPoseTile], count[kPoseTile];
+  for (int k = 0; k < kPoseTile; ++k) {
+    for (int axis = 0; axis < 3; ++axis) r[k][axis] = Floats::fill(poses[k].rotation[axis]);
+    t[k] = Floats::fill(poses[k].translation[0]);
+    reach[k] = Floats::fill(poses[k].reach);
+    count[k] = Floats::fill(0);
+  }
+  for (int row = 0; row < end; row += kFloatLanes) {
+    const auto p = Point::load(columns.source, row);
+    const Floats x = Floats::load(columns.target[0] + row);
     for (int k = 0; k < kPoseTile; ++k) {
-      for (int axis = 0; axis < 3; ++axis) r[k][axis] = Floats::fill(poses[k].rotation[axis]);
-      t[k] = Floats::fill(poses[k].translation[0]);
-      reach[k] = Floats::fill(poses[k].reach);
-      count[k] = Floats::fill(0);
+      const Floats residual = r[k][0] * p.x + r[k][1] * p.y + r[k][2] * p.z + (t[k] - x);
+      count[k] = counted(magnitude(residual) <= reach[k], count[k], one);
     }
-    for (int row = 0; row < end; row += kFloatLanes) {
-      const auto p = Point<Floats>::load(columns.source, row);
-      const Floats x = Floats::load(columns.target[0] + row);
-      for (int k = 0; k < kPoseTile; ++k) {
-        const Floats residual = r[k][0] * p.x + r[k][1] * p.y + r[k][2] * p.z + (t[k] - x);
-        count[k] = counted(magnitude(residual) <= reach[k], count[k], one);
-      }
-    }
-    for (int k = 0; k < kPoseTile; ++k) counts[k] = total(count[k]);
-  });
+  }
+  for (int k = 0; k < kPoseTile; ++k) counts[k] = total(count[k]);
 }
 
-int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
+HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
   constexpr int kStretch = 16 * kFloatLanes;  // rows between two looks at the count
   const Columns columns(table);
   const int end = table.padded_rows();
   int near = 0;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats one = Floats::fill(1), reach = Floats::fill(pose.reach), limit = Floats::fill(pose.possible);
-    Floats r[9], t[3];
-    for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
-    for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
-    int left_in_plane = near_plane;
-    for (int first = 0; first < end && near + left_in_plane > hopeless; first += kStretch) {
-      Floats in_plane = Floats::fill(0), inside = Floats::fill(0);
-      for (int row = first; row < end && row < first + kStretch; row += kFloatLanes) {
-        const auto p = Point<Floats>::load(columns.source, row), q = Point<Floats>::load(columns.target, row);
-        const Floats x = r[0] * p.x + r[1] * p.y + r[2] * p.z + (t[0] - q.x);
-        const Floats y = r[3] * p.x + r[4] * p.y + r[5] * p.z + (t[1] - q.y);
-        const Floats z = r[6] * p.x + r[7] * p.y + r[8] * p.z + (t[2] - q.z);
-        in_plane = counted(magnitude(x) <= reach, in_plane, one);
-        inside = counted(x * x + y * y + z * z <= limit, inside, one);
-      }
-      near += total(inside);
-      left_in_plane -= total(in_plane);
+  const Floats one = Floats::fill(1), reach = Floats::fill(pose.reach), limit = Floats::fill(pose.possible);
+  Floats r[9], t[3];
+  for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
+  for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
+  int left_in_plane = near_plane;
+  for (int first = 0; first < end && near + left_in_plane > hopeless; first += kStretch) {
+    Floats in_plane = Floats::fill(0), inside = Floats::fill(0);
+    for (int row = first; row < end && row < first + kStretch; row += kFloatLanes) {
+      const auto p = Point::load(columns.source, row), q = Point::load(columns.target, row);
+      const Floats x = r[0] * p.x + r[1] * p.y + r[2] * p.z + (t[0] - q.x);
+      const Floats y = r[3] * p.x + r[4] * p.y + r[5] * p.z + (t[1] - q.y);
+      const Floats z = r[6] * p.x + r[7] * p.y + r[8] * p.z + (t[2] - q.z);
+      in_plane = counted(magnitude(x) <= reach, in_plane, one);
+      inside = counted(x * x + y * y + z * z <= limit, inside, one);
     }
-    if (near + left_in_plane <= hopeless) near = hopeless;
-  });
+    near += total(inside);
+    left_in_plane -= total(in_plane);
+  }
+  if (near + left_in_plane <= hopeless) near = hopeless;
   return near;
 }
 
-namespace {
-
-template <class Floats>
 struct Similarity {
   Floats certain_slope, possible_slope, offset;
   explicit Similarity(const SimilarityFilter& filter)
       : certain_slope(Floats::fill(filter.certain_slope)),
         possible_slope(Floats::fill(filter.possible_slope)),
         offset(Floats::fill(filter.offset)) {}
-  CORRAL_INLINE auto certain(Floats lesser, Floats greater) const { return greater * certain_slope + offset <= lesser; }
-  CORRAL_INLINE auto possible(Floats lesser, Floats greater) const {
-    return greater * possible_slope <= lesser + offset;
-  }
+  HWY_INLINE auto certain(Floats lesser, Floats greater) const { return greater * certain_slope + offset <= lesser; }
+  HWY_INLINE auto possible(Floats lesser, Floats greater) const { return greater * possible_slope <= lesser + offset; }
 };
 
-}  // namespace
-
-void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,
-                    std::uint8_t* possible) {
+HWY_FLATTEN void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block,
+                                std::uint8_t* certain, std::uint8_t* possible) {
   const Columns columns(table);
   const int end = table.padded_rows(), first = 8 * block;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Similarity<Floats> test(filter);
-    const Floats zero = Floats::fill(0);
-    Floats bits[8];
-    for (int i = 0; i < 8; ++i) bits[i] = Floats::fill(static_cast<float>(1 << i));
-    for (int row = 0; row < end; row += kFloatLanes) {
-      const auto p = Point<Floats>::load(columns.source, row), q = Point<Floats>::load(columns.target, row);
-      Floats are_certain = zero, are_possible = zero;
-      for (int i = 0; i < 8; ++i) {
-        const Floats a = squared_distance(p, Point<Floats>::fill(columns.source, first + i));
-        const Floats b = squared_distance(q, Point<Floats>::fill(columns.target, first + i));
-        const Floats lesser = smaller(a, b), greater = larger(a, b);
-        are_certain = counted(test.certain(lesser, greater), are_certain, bits[i]);
-        are_possible = counted(test.possible(lesser, greater), are_possible, bits[i]);
-      }
-      are_certain.store(certain + row);
-      are_possible.store(possible + row);
+  const Similarity test(filter);
+  const Floats zero = Floats::fill(0);
+  Floats bit[8];
+  for (int i = 0; i < 8; ++i) bit[i] = Floats::fill(static_cast<float>(1 << i));
+  for (int row = 0; row < end; row += kFloatLanes) {
+    const auto p = Point::load(columns.source, row), q = Point::load(columns.target, row);
+    Floats are_certain = zero, are_possible = zero;
+    for (int i = 0; i < 8; ++i) {
+      const Floats a = squared_distance(p, Point::fill(columns.source, first + i));
+      const Floats b = squared_distance(q, Point::fill(columns.target, first + i));
+      const Floats lesser = smaller(a, b), greater = larger(a, b);
+      are_certain = counted(test.certain(lesser, greater), are_certain, bit[i]);
+      are_possible = counted(test.possible(lesser, greater), are_possible, bit[i]);
     }
-  });
+    are_certain.store(certain + row);
+    are_possible.store(possible + row);
+  }
 }
 
-void measure_distances(const FilterTable& table, int row, float* squared) {
+HWY_FLATTEN void measure_distances(const FilterTable& table, int row, float* squared) {
   const Columns columns(table);
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const auto center = Point<Floats>::fill(columns.source, row);
-    for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes)
-      squared_distance(Point<Floats>::load(columns.source, lane), center).store(squared + lane);
-  });
+  const auto center = Point::fill(columns.source, row);
+  for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes)
+    squared_distance(Point::load(columns.source, lane), center).store(squared + lane);
   squared[row] = std::numeric_limits<float>::infinity();
 }
 
+HWY_FLATTEN void count_up_to(const float* numbers, int count, const float (&limits)[kLimits], int (&counts)[kLimits]) {
+  const Floats one = Floats::fill(1);
+  Floats most[kLimits], found[kLimits];
+  for (int k = 0; k < kLimits; ++k) most[k] = Floats::fill(limits[k]), found[k] = Floats::fill(0);
+  for (int lane = 0; lane < count; lane += kFloatLanes) {
+    const Floats number = Floats::load(numbers + lane);
+    for (int k = 0; k < kLimits; ++k) found[k] = counted(number <= most[k], found[k], one);
+  }
+  for (int k = 0; k < kLimits; ++k) counts[k] = total(found[k]);
+}
+
+HWY_FLATTEN int mark_between(const float* numbers, int count, float first, float last, std::uint8_t* marks) {
+  int below = 0;
+  const Floats zero = Floats::fill(0), one = Floats::fill(1), from = Floats::fill(first), to = Floats::fill(last);
+  Floats before = zero;
+  for (int lane = 0; lane < count; lane += kFloatLanes) {
+    const Floats number = Floats::load(numbers + lane);
+    const Floats is_below = select(number < from, one, zero), is_up_to = select(number <= to, one, zero);
+    before = before + is_below;
+    (is_up_to - is_below).store(marks + lane);
+  }
+  below = total(before);
+  return below;
+}
+
+HWY_FLATTEN FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row,
+                                   const float* squared, float limit, const float* trusted) {
+  const Columns columns(table);
+  FilteredVotes votes;
+  const Similarity test(filter);
+  const Floats zero = Floats::fill(0), most = Floats::fill(limit);
+  const auto q = Point::fill(columns.target, row);
+  Floats asked = zero, certain = zero, possible = zero;
+  for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes) {
+    const Floats a = Floats::load(squared + lane);
+    const Floats voter = select(a < most, Floats::load(trusted + lane), zero);
+    const Floats b = squared_distance(Point::load(columns.target, lane), q);
+    const Floats lesser = smaller(a, b), greater = larger(a, b);
+    asked = asked + voter;
+    certain = counted(test.certain(lesser, greater), certain, voter);
+    possible = counted(test.possible(lesser, greater), possible, voter);
+  }
+  votes = {total(asked), total(certain), total(possible)};
+  return votes;
+}
+
+HWY_FLATTEN FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter,
+                                     const FilterTable& table, int row, const PoseFilter& pose) {
+  const Columns columns(voters), asking(table);
+  FilteredVotes votes{voters.rows(), 0, 0};
+  const Similarity test(filter);
+  const Floats zero = Floats::fill(0), one = Floats::fill(1);
+  const Floats surely = Floats::fill(pose.certain), perhaps = Floats::fill(pose.possible);
+  const auto p = Point::fill(asking.source, row), q = Point::fill(asking.target, row);
+  Floats r[9], t[3];
+  for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
+  for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
+  Floats certain = zero, possible = zero;
+  for (int lane = 0; lane < voters.padded_rows(); lane += kFloatLanes) {
+    const auto voter_p = Point::load(columns.source, lane);
+    const auto voter_q = Point::load(columns.target, lane);
+    const Floats a = squared_distance(voter_p, p), b = squared_distance(voter_q, q);
+    const Floats lesser = smaller(a, b), greater = larger(a, b);
+    const Floats x = r[0] * voter_p.x + r[1] * voter_p.y + r[2] * voter_p.z + (t[0] - voter_q.x);
+    const Floats y = r[3] * voter_p.x + r[4] * voter_p.y + r[5] * voter_p.z + (t[1] - voter_q.y);
+    const Floats z = r[6] * voter_p.x + r[7] * voter_p.y + r[8] * voter_p.z + (t[2] - voter_q.z);
+    const Floats residual = x * x + y * y + z * z;
+    certain = counted(test.certain(lesser, greater), certain, select(residual < surely, one, zero));
+    possible = counted(test.possible(lesser, greater), possible, select(residual <= perhaps, one, zero));
+  }
+  votes.certain = total(certain);
+  votes.possible = total(possible);
+  return votes;
+}
+
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(count_consistent);
+HWY_EXPORT(count_near_first_plane);
+HWY_EXPORT(count_near);
+HWY_EXPORT(compare_ratios);
+HWY_EXPORT(measure_distances);
+HWY_EXPORT(count_up_to);
+HWY_EXPORT(mark_between);
+HWY_EXPORT(ask_near);
+HWY_EXPORT(ask_voters);
+
+void count_consistent(const ConsistencyFilter& filter, int* counts) {
+  HWY_DYNAMIC_DISPATCH(count_consistent)(filter, counts);
+}
+
+void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
+  HWY_DYNAMIC_DISPATCH(count_near_first_plane)(table, poses, counts);
+}
+
+int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
+  return HWY_DYNAMIC_DISPATCH(count_near)(table, pose, near_plane, hopeless);
+}
+
+void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,
+                    std::uint8_t* possible) {
+  HWY_DYNAMIC_DISPATCH(compare_ratios)(table, filter, block, certain, possible);
+}
+
+void measure_distances(const FilterTable& table, int row, float* squared) {
+  HWY_DYNAMIC_DISPATCH(measure_distances)(table, row, squared);
+}
+
 void count_up_to(const float* numbers, int count, const float (&limits)[kLimits], int (&counts)[kLimits]) {
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats one = Floats::fill(1);
-    Floats most[kLimits], found[kLimits];
-    for (int k = 0; k < kLimits; ++k) most[k] = Floats::fill(limits[k]), found[k] = Floats::fill(0);
-    for (int lane = 0; lane < count; lane += kFloatLanes) {
-      const Floats number = Floats::load(numbers + lane);
-      for (int k = 0; k < kLimits; ++k) found[k] = counted(number <= most[k], found[k], one);
-    }
-    for (int k = 0; k < kLimits; ++k) counts[k] = total(found[k]);
-  });
+  HWY_DYNAMIC_DISPATCH(count_up_to)(numbers, count, limits, counts);
 }
 
 int mark_between(const float* numbers, int count, float first, float last, std::uint8_t* marks) {
-  int below = 0;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats zero = Floats::fill(0), one = Floats::fill(1), from = Floats::fill(first), to = Floats::fill(last);
-    Floats before = zero;
-    for (int lane = 0; lane < count; lane += kFloatLanes) {
-      const Floats number = Floats::load(numbers + lane);
-      const Floats is_below = select(number < from, one, zero), is_up_to = select(number <= to, one, zero);
-      before = before + is_below;
-      (is_up_to - is_below).store(marks + lane);
-    }
-    below = total(before);
-  });
-  return below;
+  return HWY_DYNAMIC_DISPATCH(mark_between)(numbers, count, first, last, marks);
 }
 
 FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row, const float* squared,
                        float limit, const float* trusted) {
-  const Columns columns(table);
-  FilteredVotes votes;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Similarity<Floats> test(filter);
-    const Floats zero = Floats::fill(0), most = Floats::fill(limit);
-    const auto q = Point<Floats>::fill(columns.target, row);
-    Floats asked = zero, certain = zero, possible = zero;
-    for (int lane = 0; lane < table.padded_rows(); lane += kFloatLanes) {
-      const Floats a = Floats::load(squared + lane);
-      const Floats voter = select(a < most, Floats::load(trusted + lane), zero);
-      const Floats b = squared_distance(Point<Floats>::load(columns.target, lane), q);
-      const Floats lesser = smaller(a, b), greater = larger(a, b);
-      asked = asked + voter;
-      certain = counted(test.certain(lesser, greater), certain, voter);
-      possible = counted(test.possible(lesser, greater), possible, voter);
-    }
-    votes = {total(asked), total(certain), total(possible)};
-  });
-  return votes;
+  return HWY_DYNAMIC_DISPATCH(ask_near)(table, filter, row, squared, limit, trusted);
 }
 
 FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter, const FilterTable& table, int row,
                          const PoseFilter& pose) {
-  const Columns columns(voters), asking(table);
-  FilteredVotes votes{voters.rows(), 0, 0};
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Similarity<Floats> test(filter);
-    const Floats zero = Floats::fill(0), one = Floats::fill(1);
-    const Floats surely = Floats::fill(pose.certain), perhaps = Floats::fill(pose.possible);
-    const auto p = Point<Floats>::fill(asking.source, row), q = Point<Floats>::fill(asking.target, row);
-    Floats r[9], t[3];
-    for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
-    for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
-    Floats certain = zero, possible = zero;
-    for (int lane = 0; lane < voters.padded_rows(); lane += kFloatLanes) {
-      const auto voter_p = Point<Floats>::load(columns.source, lane);
-      const auto voter_q = Point<Floats>::load(columns.target, lane);
-      const Floats a = squared_distance(voter_p, p), b = squared_distance(voter_q, q);
-      const Floats lesser = smaller(a, b), greater = larger(a, b);
-      const Floats x = r[0] * voter_p.x + r[1] * voter_p.y + r[2] * voter_p.z + (t[0] - voter_q.x);
-      const Floats y = r[3] * voter_p.x + r[4] * voter_p.y + r[5] * voter_p.z + (t[1] - voter_q.y);
-      const Floats z = r[6] * voter_p.x + r[7] * voter_p.y + r[8] * voter_p.z + (t[2] - voter_q.z);
-      const Floats residual = x * x + y * y + z * z;
-      certain = counted(test.certain(lesser, greater), certain, select(residual < surely, one, zero));
-      possible = counted(test.possible(lesser, greater), possible, select(residual <= perhaps, one, zero));
-    }
-    votes.certain = total(certain);
-    votes.possible = total(possible);
-  });
-  return votes;
+  return HWY_DYNAMIC_DISPATCH(ask_voters)(voters, filter, table, row, pose);
 }
 
 }  // namespace corral
+#endif

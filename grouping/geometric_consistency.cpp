@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "grouping/column_loops.h"
 #include "grouping/compatibility.h"
 #include "grouping/filter_loops.h"
 
@@ -26,23 +27,7 @@ class ConsistencyTest {
   /// The rows that agree with a seed, which agrees with itself: d = 0.
   Indices star(int seed) const {
     std::vector<std::uint8_t> agrees(static_cast<std::size_t>(matches_.size()));
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      const auto distance = [&](const Points& points, int row) {
-        const auto apart = [&](int axis) {
-          return Lanes::fill(points(seed, axis)) - Lanes::load(points.col(axis).data() + row);
-        };
-        const Lanes x = apart(0), y = apart(1), z = apart(2);
-        return square_root(x * x + y * y + z * z);
-      };
-      const Lanes yes = Lanes::fill(1), no = Lanes::fill(0), limit = Lanes::fill(tolerance_);
-      for (int row = 0; row + kLanes <= matches_.size(); row += kLanes)
-        select(magnitude(distance(matches_.source_points, row) - distance(matches_.target_points, row)) < limit, yes,
-               no)
-            .store(&agrees[static_cast<std::size_t>(row)]);
-    });
-    for (int row = matches_.size() / kLanes * kLanes; row < matches_.size(); ++row)
-      agrees[static_cast<std::size_t>(row)] = (*this)(seed, row);
+    compare_with_seed(matches_, seed, tolerance_, agrees.data());
     return marked_rows(agrees);
   }
 

@@ -9,7 +9,9 @@
 #include <cstring>
 #include <limits>
 
-#include "kernel/vectorized.h"
+#include "grouping/column_loops.h"
+#include "kernel/bounding_box.h"
+#include "kernel/columns.h"
 
 namespace corral {
 namespace {
@@ -99,20 +101,12 @@ struct Box {
   Eigen::Array3d low, high;
 };
 
-Box bounding_box(const Votes& votes) {
+Box box_of(const Votes& votes) {
   Box box;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (int axis = 0; axis < 3; ++axis) {
-      const AlignedColumn& column = votes.at[axis];
-      Lanes low = Lanes::load(column.data()), high = low;
-      for (std::size_t i = 0; i < column.size(); i += kLanes) {
-        const Lanes place = Lanes::load(column.data() + i);
-        low = smaller(low, place), high = larger(high, place);
-      }
-      box.low(axis) = smallest(low), box.high(axis) = largest(high);
-    }
-  });
+  for (int axis = 0; axis < 3; ++axis) {
+    const Extent extent = extent_of(votes.at[axis].data(), static_cast<Eigen::Index>(votes.at[axis].size()));
+    box.low(axis) = extent.low, box.high(axis) = extent.high;
+  }
   return box;
 }
 
@@ -128,26 +122,20 @@ using Places = std::vector<std::int32_t>;
 std::array<Places, 3> places_in_box(const Votes& votes, const Box& box, int bins, double resolution) {
   const double indivisible = rounding_extent(box, resolution);
   std::array<Places, 3> places;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes last = Lanes::fill(bins - 1);
-    for (int axis = 0; axis < 3; ++axis) {
-      const AlignedColumn& column = votes.at[axis];
-      Places& place = places[static_cast<std::size_t>(axis)];
-      place.assign(column.size(), 0);
-      const double extent = box.high(axis) - box.low(axis);
-      if (!(extent > indivisible)) continue;
-      const Lanes low = Lanes::fill(box.low(axis)), width = Lanes::fill(extent / bins);
-      for (std::size_t i = 0; i < column.size(); i += kLanes)
-        smaller((Lanes::load(column.data() + i) - low) / width, last).store(place.data() + i);
-    }
-  });
+  for (int axis = 0; axis < 3; ++axis) {
+    const AlignedColumn& column = votes.at[axis];
+    Places& place = places[static_cast<std::size_t>(axis)];
+    place.assign(column.size(), 0);
+    const double extent = box.high(axis) - box.low(axis);
+    if (extent > indivisible)
+      find_cells(column.data(), column.size(), {box.low(axis), extent / bins, bins - 1.0}, place.data());
+  }
   return places;
 }
 
 /// Each vote counts in one cell of the box; the fullest and its 6 face neighbours win.
 Indices select_in_box(const Votes& votes, int bins, double resolution) {
-  const auto [x, y, z] = places_in_box(votes, bounding_box(votes), bins, resolution);
+  const auto [x, y, z] = places_in_box(votes, box_of(votes), bins, resolution);
   const auto count = static_cast<std::uint64_t>(bins);
   Accumulator<std::uint64_t> accumulator(std::min<std::size_t>(votes.size(), count * count * count));
   for (std::size_t i = 0; i < votes.size(); ++i)  // they compare as x, then y, then z do
@@ -183,7 +171,7 @@ void visit_shares(const Eigen::Array3d& vote, const Eigen::Array3d& low, double 
 
 /// Each vote is shared among 8 cubes; those with a share in the fullest win.
 Indices select_in_cubes(const Votes& votes, double side) {
-  const Eigen::Array3d low = bounding_box(votes).low;
+  const Eigen::Array3d low = box_of(votes).low;
   Accumulator<Cell> accumulator(8 * votes.size());
   for (std::size_t i = 0; i < votes.size(); ++i)
     visit_shares(votes.position(i), low, side, [&](const Cell& cell, double weight) { accumulator.add(cell, weight); });

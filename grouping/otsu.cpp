@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "grouping/column_loops.h"
 #include "grouping/compatibility.h"
 #include "kernel/error.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 namespace {
@@ -24,27 +24,14 @@ int best_cut(const std::vector<double>& weights, const std::vector<double>& valu
     lower_weights[i] = weight += weights[i];
     lowers[i] = sum += weights[i] * values[i];
   }
-  const double total_weight = weight, total = sum;
-  const auto variance = [=](auto lower_weight, auto lower, auto all_weight, auto all) {
-    const auto upper_weight = all_weight - lower_weight;
-    const auto gap = lower / lower_weight - (all - lower) / upper_weight;
-    return lower_weight * upper_weight * gap * gap;
-  };
   std::vector<double> variances(count);
-  const std::size_t whole = count - count % kLanes;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes all_weight = Lanes::fill(total_weight), all = Lanes::fill(total);
-    for (std::size_t i = 0; i < whole; i += kLanes)
-      variance(Lanes::load(&lower_weights[i]), Lanes::load(&lowers[i]), all_weight, all).store(&variances[i]);
-  });
-  for (std::size_t i = whole; i < count; ++i) variances[i] = variance(lower_weights[i], lowers[i], total_weight, total);
+  between_class_variances(lower_weights.data(), lowers.data(), {weight, sum}, count, variances.data());
 
   int best = -1;
   double to_beat = 0;
   for (std::size_t i = 0; i + 1 < count; ++i) {
     // An empty class ends no part: the cut below it is the same.
-    if (!(variances[i] > to_beat) || !(weights[i] > 0) || !(total_weight - lower_weights[i] > 0)) continue;
+    if (!(variances[i] > to_beat) || !(weights[i] > 0) || !(weight - lower_weights[i] > 0)) continue;
     best = static_cast<int>(i), to_beat = variances[i] * (1 + kTie);
   }
   return best;

@@ -37,44 +37,6 @@ struct Hypothesis {
   RigidTransform target_from_source;
 };
 
-/// One lane group: the corners of kLanes triangles on one side.
-struct Corners {
-  double numbers[3][3][kLanes];  ///< corner, axis, lane
-
-  void set(int lane, const Points& points, const Triple& rows) {
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      for (int axis = 0; axis < 3; ++axis) numbers[corner][axis][lane] = points(rows[corner], axis);
-  }
-  template <class Lanes>
-  CORRAL_INLINE void load(LanePoint<Lanes> (&corners)[3]) const {
-    for (int corner = 0; corner < 3; ++corner)
-      corners[corner] = {Lanes::load(numbers[corner][0]), Lanes::load(numbers[corner][1]),
-                         Lanes::load(numbers[corner][2])};
-  }
-};
-
-struct Motions {
-  double numbers[13][kLanes];  ///< the rotation by rows, the translation, 1 if usable; by lane
-
-  template <class Lanes>
-  CORRAL_INLINE void store(const LaneMotion<Lanes>& motion) {
-    const LanePoint<Lanes> points[4] = {motion.rows[0], motion.rows[1], motion.rows[2], motion.translation};
-    for (int i = 0; i < 4; ++i) {
-      points[i].x.store(numbers[3 * i]);
-      points[i].y.store(numbers[3 * i + 1]);
-      points[i].z.store(numbers[3 * i + 2]);
-    }
-    motion.usable.store(numbers[12]);
-  }
-  bool is_usable(int lane) const { return numbers[12][lane] > 0; }
-  RigidTransform get(int lane) const {
-    RigidTransform motion;
-    for (int i = 0; i < 9; ++i) motion.rotation(i / 3, i % 3) = numbers[i][lane];
-    for (int i = 0; i < 3; ++i) motion.translation(i) = numbers[9 + i][lane];
-    return motion;
-  }
-};
-
 class Search {
  public:
   Search(const CorrespondenceSet& matches, const RansacOptions& options)
@@ -113,13 +75,7 @@ class Search {
         source_.set(lane, matches_.source_points, triple_);
         target_.set(lane, matches_.target_points, triple_);
       }
-      vectorized([&](auto kind) {
-        using Lanes = typename decltype(kind)::Lanes;
-        LanePoint<Lanes> p[3], q[3];
-        source_.load(p);
-        target_.load(q);
-        motions_.store(fit_triangle(p, q, smallest_area_));
-      });
+      fit_triangles(source_, target_, smallest_area_, motions_);
       for (int lane = 0; lane < lanes_used; ++lane)
         if (motions_.is_usable(lane)) hypotheses_.push_back({first + group + lane, motions_.get(lane)});
     }
@@ -180,8 +136,8 @@ class Search {
   const FilterTable table_;
   std::vector<Hypothesis> hypotheses_;
   Triple triple_{};
-  Corners source_, target_;
-  Motions motions_;
+  LaneTriangles source_, target_;
+  LaneMotions motions_;
   int best_count_ = 0;
   int last_iteration_;
   RigidTransform best_;

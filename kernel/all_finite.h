@@ -6,6 +6,7 @@
 namespace corral {
 
 /// Whether so many numbers are neither infinite nor NaN: one pass at the speed of memory.
+/// Plain form  tests/support/reference_columns.h
 bool all_finite(const double* numbers, Eigen::Index count);
 
 }  // namespace corral

@@ -14,6 +14,13 @@ struct BoundingBox {
   double longest_side() const { return (high - low).maxCoeff(); }
 };
 
+/// The least and the largest of some finite numbers, at least one.
+struct Extent {
+  double low, high;
+};
+/// Plain form  tests/support/reference_columns.h
+Extent extent_of(const double* numbers, Eigen::Index count);
+
 /// Of no points: a box of no size at the origin. The points must be finite.
 BoundingBox bounding_box(const Points& points);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "kernel/columns.h"
 #include "kernel/types.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 

@@ -10,6 +10,7 @@ namespace corral {
 /// eights, and so on. Every part is cut across the longest side of its box. Rows that are not finite come last.
 ///
 /// Cost      O(N log N).
+/// Plain form  tests/support/reference_spatial_order.h
 Indices spatial_order(const Points& points, const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

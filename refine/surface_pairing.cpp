@@ -12,63 +12,18 @@ namespace {
 
 constexpr std::size_t kShare = 4096;  // pairs that one thread sums at a time
 
-/// Eight pairs, or fewer: the moved points m in pr about a centre, d = m - q in pr, the normals n, and 1; all are zero where
-/// there is no pair.
-template <class Lanes>
-struct PairLanes {
-  Lanes m[3], d[3], n[3], one;
-};
-
-/// The columns whose products make up the sums: of a plane pair the 13 of its residual, of a point pair those that its three
-/// residuals share.
-struct PlaneColumns {
-  static constexpr int kWidth = 13;
-  static constexpr bool kWithNormals = true;
-  template <class Lanes>
-  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (int j = 0; j < 3; ++j) columns[3 * axis + j] = pair.m[axis] * pair.n[j];
-    for (int j = 0; j < 3; ++j) columns[9 + j] = pair.n[j];
-    columns[12] = pair.n[0] * pair.d[0] + pair.n[1] * pair.d[1] + pair.n[2] * pair.d[2];
-  }
-  static Gram gram(const Eigen::Matrix<double, kWidth, kWidth>& sums) { return sums; }
-};
-
-struct PointColumns {
-  static constexpr int kWidth = 7;
-  static constexpr bool kWithNormals = false;
-  template <class Lanes>
-  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
-    for (int axis = 0; axis < 3; ++axis) columns[axis] = pair.m[axis];
-    columns[3] = pair.one;
-    for (int axis = 0; axis < 3; ++axis) columns[4 + axis] = pair.d[axis];
-  }
-  static Gram gram(const Eigen::Matrix<double, kWidth, kWidth>& sums) {
-    Gram gram = Gram::Zero();  // r_axis = sum_j (R - I)(axis, j) m_j + t_axis + d_axis
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int j = 0; j < 4; ++j) {
-        for (int k = 0; k < 4; ++k) gram(3 * j + axis, 3 * k + axis) = sums(j, k);
-        gram(3 * j + axis, 12) = gram(12, 3 * j + axis) = sums(j, 4 + axis);
-      }
-      gram(12, 12) += sums(4 + axis, 4 + axis);
+/// The equations of point pairs, from what their three residuals share: r_axis = sum_j (R - I)(axis, j) m_j + t_axis + d_axis.
+Gram gram_of_points(const Eigen::MatrixXd& sums) {
+  Gram gram = Gram::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int j = 0; j < 4; ++j) {
+      for (int k = 0; k < 4; ++k) gram(3 * j + axis, 3 * k + axis) = sums(j, k);
+      gram(3 * j + axis, 12) = gram(12, 3 * j + axis) = sums(j, 4 + axis);
     }
-    return gram;
+    gram(12, 12) += sums(4 + axis, 4 + axis);
   }
-};
-
-/// The columns of the point-to-plane equations: arm x normal, normal. The arm stands in the place of m.
-struct EquationColumns {
-  static constexpr int kWidth = 6;
-  static constexpr bool kWithNormals = true;
-  template <class Lanes>
-  static CORRAL_INLINE void set(const PairLanes<Lanes>& pair, Lanes* columns) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-      columns[axis] = pair.m[next] * pair.n[last] - pair.m[last] * pair.n[next];
-      columns[3 + axis] = pair.n[axis];
-    }
-  }
-};
+  return gram;
+}
 
 }  // namespace
 
@@ -125,90 +80,35 @@ void SurfacePairing::take_target_normals() {
 /// surfaces is taken to be inside out.
 void SurfacePairing::compare_normals(const RigidTransform& pose) {
   if (taken_normals_[0].size() != is_pair_.size()) take_source_normals();
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes zero = Lanes::fill(0);
-    agreement_.resize(is_pair_.size());
-    Lanes turned[3], agreements = zero;
-    const auto turn = [&](std::size_t i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        turned[axis] = zero;
-        for (int j = 0; j < 3; ++j)
-          turned[axis] = turned[axis] + Lanes::fill(pose.rotation(axis, j)) * Lanes::load(&taken_normals_[j][i]);
-      }
-    };
-    for (std::size_t i = 0; i < is_pair_.size(); i += kLanes) {
-      turn(i);
-      Lanes agreement = zero;
-      for (int axis = 0; axis < 3; ++axis) agreement = agreement + turned[axis] * Lanes::load(&normals_[axis][i]);
-      agreement.store(&agreement_[i]);
-      agreements = agreements + agreement;
-    }
-    const Lanes side = Lanes::fill(sum(agreements) < 0 ? -1 : 1), least = Lanes::fill(least_cosine_);
-    for (std::size_t i = 0; i < is_pair_.size(); i += kLanes) {
-      turn(i);
-      select(least <= side * Lanes::load(&agreement_[i]), Lanes::load(&is_pair_[i]), zero).store(&is_pair_[i]);
-      Lanes mean[3], squared = zero;
-      for (int axis = 0; axis < 3; ++axis) {
-        mean[axis] = Lanes::load(&normals_[axis][i]) + side * turned[axis];
-        squared = squared + mean[axis] * mean[axis];
-      }
-      const Lanes length = square_root(squared);
-      for (int axis = 0; axis < 3; ++axis) (mean[axis] / length).store(&normals_[axis][i]);
-    }
-  });
-}
-
-template <class Lanes, bool kWithNormals>
-CORRAL_INLINE auto SurfacePairing::eight_pairs(std::size_t first, const AlignedColumn (&places)[3],
-                                               const Eigen::Vector3d& centre, double scale) const {
-  PairLanes<Lanes> pairs;
-  const Lanes zero = Lanes::fill(0);
-  pairs.one = Lanes::load(&is_pair_[first]);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Lanes m = Lanes::load(&places[axis][first]) - Lanes::fill(centre(axis)),
-                d = Lanes::load(&pairs_->source[axis][first]) - Lanes::load(&pairs_->target[axis][first]);
-    pairs.m[axis] = select(zero < pairs.one, m * Lanes::fill(scale), zero);
-    pairs.d[axis] = select(zero < pairs.one, d * Lanes::fill(scale), zero);
-  }
-  if (!kWithNormals) return pairs;
-  for (int axis = 0; axis < 3; ++axis)
-    pairs.n[axis] = select(zero < pairs.one, Lanes::load(&normals_[axis][first]), zero);
-  return pairs;
+  agreement_.resize(is_pair_.size());
+  agree({{taken_normals_[0].data(), taken_normals_[1].data(), taken_normals_[2].data()},
+         {normals_[0].data(), normals_[1].data(), normals_[2].data()},
+         agreement_.data(),
+         is_pair_.data(),
+         is_pair_.size()},
+        pose.rotation, least_cosine_);
 }
 
 /// sum f f^T over the pairs, f their columns; m are some places about a centre, all is scaled.
-template <class Columns>
-auto SurfacePairing::sum_of_products(const AlignedColumn (&places)[3], const Eigen::Vector3d& centre,
-                                     double scale) const {
-  constexpr int kWidth = Columns::kWidth;
-  using Sums = Eigen::Matrix<double, kWidth, kWidth>;
-  std::vector<Sums> parts((is_pair_.size() + kShare - 1) / kShare);
+Eigen::MatrixXd SurfacePairing::sum_of_products(PairProducts products, const AlignedColumn (&places)[3],
+                                                const Eigen::Vector3d& centre, double scale) const {
+  const PairColumns pairs{places, pairs_->source, pairs_->target, normals_, is_pair_.data(), centre, scale};
+  std::vector<Eigen::MatrixXd> parts((is_pair_.size() + kShare - 1) / kShare);
   surfaces_.parallel(static_cast<int>(parts.size()), [&](int part) {
     const std::size_t begin = static_cast<std::size_t>(part) * kShare, end = std::min(begin + kShare, is_pair_.size());
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      Lanes sums[kWidth][kWidth];
-      for (auto& row : sums) std::fill_n(row, kWidth, Lanes::fill(0));
-      for (std::size_t first = begin; first < end; first += kLanes) {
-        Lanes columns[kWidth];
-        Columns::set(eight_pairs<Lanes, Columns::kWithNormals>(first, places, centre, scale), columns);
-        for (int i = 0; i < kWidth; ++i)
-          for (int j = 0; j <= i; ++j) sums[i][j] = sums[i][j] + columns[i] * columns[j];
-      }
-      for (int i = 0; i < kWidth; ++i)
-        for (int j = 0; j <= i; ++j)
-          parts[static_cast<std::size_t>(part)](i, j) = parts[static_cast<std::size_t>(part)](j, i) = sum(sums[i][j]);
-    });
+    parts[static_cast<std::size_t>(part)] = add_products(products, pairs, begin, end);
   });
-  Sums result = Sums::Zero();
-  for (const Sums& part : parts) result += part;
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(width_of(products), width_of(products));
+  for (const Eigen::MatrixXd& part : parts) result += part;
   return result;
 }
 
-template <class Columns>
-Gram SurfacePairing::gram() const {
-  return Columns::gram(sum_of_products<Columns>(pairs_->source, centre_, 1 / unit_));
+Gram SurfacePairing::plane_gram() const {
+  return sum_of_products(PairProducts::OfPlanes, pairs_->source, centre_, 1 / unit_);
+}
+
+Gram SurfacePairing::point_gram() const {
+  return gram_of_points(sum_of_products(PairProducts::OfPoints, pairs_->source, centre_, 1 / unit_));
 }
 
 Pairing SurfacePairing::pair(SurfaceResidual residual, const RigidTransform& pose, double limit_pr) {
@@ -228,12 +128,12 @@ Pairing SurfacePairing::pair(SurfaceResidual residual, const RigidTransform& pos
   pairing.centre = centre_;
   pairing.points = taken_.rows();
   for (const double is_pair : is_pair_) pairing.pairs += is_pair != 0;
-  pairing.gram = by_planes ? gram<PlaneColumns>() : gram<PointColumns>();
+  pairing.gram = by_planes ? plane_gram() : point_gram();
   return pairing;
 }
 
 Spread SurfacePairing::spread(const Pairing& last) const {
-  const double all = gram<PointColumns>()(12, 12), count = static_cast<double>(last.pairs);
+  const double all = point_gram()(12, 12), count = static_cast<double>(last.pairs);
   return {last.squares() / count, (all - last.squares()) / count};
 }
 
@@ -251,7 +151,8 @@ double SurfacePairing::condition(Eigen::Index count) {
   const double size = std::sqrt(squares / static_cast<double>(count));
   if (!(size > 0)) return kInfinity;
   take_target_normals();
-  const auto equations = sum_of_products<EquationColumns>(pairs_->target, mean, 1 / size);
+  const Eigen::Matrix<double, 6, 6> equations =
+      sum_of_products(PairProducts::OfEquations, pairs_->target, mean, 1 / size);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(equations, Eigen::EigenvaluesOnly);
   const double least = eigen.eigenvalues()(0), most = eigen.eigenvalues()(5);
   return least > 0 ? most / least : kInfinity;

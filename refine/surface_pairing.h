@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/vectorized.h"
 #include "refine/gram_fit.h"
+#include "refine/pairing_loops.h"
 #include "refine/refine_surface.h"
 
 namespace corral {
@@ -52,13 +52,10 @@ class SurfacePairing {
   double condition(Eigen::Index count);
 
  private:
-  template <class Columns>
-  Gram gram() const;
-  template <class Columns>
-  auto sum_of_products(const AlignedColumn (&places)[3], const Eigen::Vector3d& centre, double scale) const;
-  template <class Lanes, bool kWithNormals>
-  auto eight_pairs(std::size_t first, const AlignedColumn (&places)[3], const Eigen::Vector3d& centre,
-                   double scale) const;
+  Eigen::MatrixXd sum_of_products(PairProducts products, const AlignedColumn (&places)[3],
+                                  const Eigen::Vector3d& centre, double scale) const;
+  Gram plane_gram() const;
+  Gram point_gram() const;
   void take_source_normals();
   void take_target_normals();
   void compare_normals(const RigidTransform& pose);

@@ -27,7 +27,7 @@ struct Room {
   Names libraries;  ///< owners of <...> headers that it may include, beside the standard library
 };
 
-const Names kSurfaceLibraries = {"Eigen", "CGAL", "OpenMesh", "flann", "boost"};
+const Names kSurfaceLibraries = {"Eigen", "hwy", "CGAL", "OpenMesh", "flann", "boost"};
 const Names kAppLibraries = {"Eigen", "CLI", "nlohmann", "oneapi", "boost"};
 
 /// The rooms of apps/ from the lowest to the highest: none includes one above it.
@@ -41,13 +41,13 @@ std::map<std::string, Room> make_rooms() {
                     matching = surface + "/matching", scan = surface + "/scan";
   const Names all_of_surface = {surface, mesh, search, matching, scan};
   std::map<std::string, Room> rooms = {
-      {"kernel", {{"kernel"}, {"Eigen"}}},
+      {"kernel", {{"kernel"}, {"Eigen", "hwy"}}},
       {mesh, {{"kernel", mesh}, kSurfaceLibraries}},
       {search, {{"kernel", mesh, search}, kSurfaceLibraries}},
       {matching, {{"kernel", matching}, kSurfaceLibraries}},
       {scan, {{"kernel", mesh, search, scan}, kSurfaceLibraries}},
-      {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
-      {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
+      {"grouping", {{"kernel", "grouping"}, {"Eigen", "hwy"}}},
+      {"refine", {{"kernel", "refine"}, {"Eigen", "hwy", "ceres"}}},
   };
   Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "toml++"}};
   pipeline.includes.insert("kernel");
@@ -69,7 +69,7 @@ std::map<std::string, Room> make_rooms() {
 }
 const std::map<std::string, Room> kRooms = make_rooms();
 
-const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
+const Names kNeverInHeaders = {"hwy", "CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
 struct Include {
@@ -116,6 +116,9 @@ std::vector<Include> includes() {
 
 bool is_header(const std::string& file) { return fs::path(file).extension() == ".h"; }
 
+/// Compiled once for each target of Highway, and only in sources.
+bool is_for_targets(const std::string& file) { return std::regex_search(file, std::regex("-inl\\.h$")); }
+
 TEST(Layering, RoomsIncludeOnlyWhatThePlanAllows) {
   int checked = 0;
   for (const Include& include : includes()) {
@@ -142,7 +145,7 @@ TEST(Layering, LibrariesStayInTheirRooms) {
     if (room.rfind("apps", 0) != 0) {
       EXPECT_FALSE(kOnlyInApps.count(include.name)) << include.file << " includes " << include.name;
     }
-    if (is_header(include.file)) {
+    if (is_header(include.file) && !is_for_targets(include.file)) {
       EXPECT_FALSE(kNeverInHeaders.count(owner)) << include.file << " includes " << include.name;
     }
   }
@@ -191,8 +194,30 @@ TEST(Layering, EveryFileIsLicensedAndOfAReadableLength) {
     EXPECT_EQ(text.rfind("// SPDX-License-Identifier: MIT\n", 0), 0u) << file;
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400) << file;
     if (is_header(file)) {
-      EXPECT_NE(text.find("#pragma once"), std::string::npos) << file;
+      EXPECT_NE(text.find(is_for_targets(file) ? "HWY_TARGET_TOGGLE" : "#pragma once"), std::string::npos) << file;
     }
+  }
+}
+
+TEST(Layering, HeadersForTargetsStayInSources) {
+  int checked = 0;
+  for (const Include& include : includes()) {
+    if (!include.quoted || !is_for_targets(include.name)) continue;
+    ++checked;
+    EXPECT_TRUE(!is_header(include.file) || is_for_targets(include.file))
+        << include.file << " includes " << include.name;
+  }
+  EXPECT_GT(checked, 10);
+}
+
+/// Vector code stands on Highway: what it is made of would build with one compiler, or for one machine, only.
+TEST(Layering, NoAssemblyAttributesOrBuiltins) {
+  static const std::regex own("\\basm\\s*(volatile\\s*)?\\(|__attribute__|\\[\\[gnu::|__builtin_|immintrin|arm_neon");
+  for (const std::string& file : source_files()) {
+    std::smatch match;
+    const std::string text = read(kRoot / file);
+    if (file != "tests/layering_test.cpp")
+      EXPECT_FALSE(std::regex_search(text, match, own)) << file << ": " << match.str();
   }
 }
 

@@ -16,7 +16,7 @@ constexpr char kWho[] = "describe_fpfh";
 constexpr std::size_t kBlock = 64;
 
 /// Adds a share of S(p).
-CORRAL_INLINE void add_share(const PairCounts& counts, double share, double* sums) {
+void add_share(const PairCounts& counts, double share, double* sums) {
   const double weight = share / counts.pairs;
   for (int bin = 0; bin < kFpfhSize; ++bin) sums[bin] += weight * counts.bins[bin];
 }
@@ -101,20 +101,20 @@ class Describer {
 };
 
 bool Describer::weigh(int keypoint, const Support& support, double* feature) const {
+  const bool is_pcl = options_.form == FpfhForm::Pcl;
   double sums[kFpfhSize] = {};
-  vectorized([&](auto) {
-    int with_histogram = 0;
-    for (int j = 0; j < support.count; ++j) {
-      const PairCounts& counts = counts_of(row(support, j));
-      if (counts.pairs == 0) continue;
-      const double distance = support.distance[static_cast<std::size_t>(j)];
-      add_share(counts, options_.form == FpfhForm::Pcl ? 1 / (distance * distance) : radius_ / distance, sums);
-      ++with_histogram;
-    }
-    if (options_.form == FpfhForm::Pcl) return;
+  int with_histogram = 0;
+  for (int j = 0; j < support.count; ++j) {
+    const PairCounts& counts = counts_of(row(support, j));
+    if (counts.pairs == 0) continue;
+    const double distance = support.distance[static_cast<std::size_t>(j)];
+    add_share(counts, is_pcl ? 1 / (distance * distance) : radius_ / distance, sums);
+    ++with_histogram;
+  }
+  if (!is_pcl) {
     for (double& sum : sums) sum /= std::max(with_histogram, 1);
     if (counts_of(keypoint).pairs > 0) add_share(counts_of(keypoint), 1, sums);
-  });
+  }
   for (int first = 0; first < kFpfhSize; first += kFpfhBins) {
     double total = 0;
     for (int bin = first; bin < first + kFpfhBins; ++bin) total += sums[bin];

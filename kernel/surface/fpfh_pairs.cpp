@@ -4,7 +4,14 @@
 
 #include <algorithm>
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/fpfh_pairs.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr int kMiddle = 5, kNoBin = 11;
@@ -27,10 +34,9 @@ struct PairBins {
 };
 
 /// Bins of the pairs of one vertex.
-template <class Lanes>
 class PairBinner {
  public:
-  CORRAL_INLINE PairBinner(const Support& support, const Eigen::Vector3d& normal, FpfhForm form)
+  HWY_INLINE PairBinner(const Support& support, const Eigen::Vector3d& normal, FpfhForm form)
       : support_(support),
         nx_(Lanes::fill(normal.x())),
         ny_(Lanes::fill(normal.y())),
@@ -38,7 +44,7 @@ class PairBinner {
         without_side_(Lanes::fill(form == FpfhForm::Pcl ? kMiddle : kNoBin)) {}
 
   /// Eight pairs from the i-th neighbour on, into the places from `at` on.
-  CORRAL_INLINE void bin(std::size_t i, std::size_t at, PairBins& bins) const {
+  HWY_INLINE void bin(std::size_t i, std::size_t at, PairBins& bins) const {
     const Lanes zero = Lanes::fill(0);
     const Lanes x = Lanes::load(&support_.x[i]), y = Lanes::load(&support_.y[i]), z = Lanes::load(&support_.z[i]);
     const Lanes mx = Lanes::load(&support_.nx[i]), my = Lanes::load(&support_.ny[i]), mz = Lanes::load(&support_.nz[i]);
@@ -59,7 +65,7 @@ class PairBinner {
     const auto has_side = Lanes::fill(kParallel) * squared < side;
     const auto has_normal = zero < mx * mx + my * my + mz * mz;
     const Lanes none = Lanes::fill(kNoBin);
-    const auto store = [&](const Lanes& value, std::int32_t* to) {
+    const auto store = [&](const Lanes& value, std::int32_t* to) HWY_ATTR {
       select(has_normal, select(has_side, value, without_side_), none).store(to + at);
     };
     store(theta, bins.theta), store(alpha, bins.alpha), store(phi, bins.phi);
@@ -67,13 +73,13 @@ class PairBinner {
 
  private:
   /// The middle bin and some more, on the side of a value.
-  static CORRAL_INLINE Lanes from_middle(const Lanes& value, const Lanes& steps) {
+  static HWY_INLINE Lanes from_middle(const Lanes& value, const Lanes& steps) {
     const Lanes middle = Lanes::fill(kMiddle);
     return select(value < Lanes::fill(0), middle - steps, middle + steps);
   }
 
   /// The bin of value / unit in -1 .. 1.
-  static CORRAL_INLINE Lanes interval(const Lanes& value, const Lanes& unit) {
+  static HWY_INLINE Lanes interval(const Lanes& value, const Lanes& unit) {
     const Lanes size = magnitude(value), one = Lanes::fill(1);
     Lanes steps = Lanes::fill(0);
     for (const double border : kBorder) steps = select(Lanes::fill(border) * unit < size, steps + one, steps);
@@ -81,7 +87,7 @@ class PairBinner {
   }
 
   /// The bin of atan2(y, x) in -pi .. pi: |y| cos(b) - x sin(b) is above 0 where |angle| is above b.
-  static CORRAL_INLINE Lanes sector(const Lanes& y, const Lanes& x) {
+  static HWY_INLINE Lanes sector(const Lanes& y, const Lanes& x) {
     const Lanes size = magnitude(y), one = Lanes::fill(1);
     Lanes steps = Lanes::fill(0);
     for (int i = 0; i < kMiddle; ++i)
@@ -96,33 +102,42 @@ class PairBinner {
 /// Vertices side by side fall into the same bins, and need not wait for each other.
 constexpr std::size_t kCopies = 4;
 
-}  // namespace
+constexpr int kPlaces = 16;  // 11 bins, and one for pairs without
 
-PairCounts count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
-  PairCounts counts;
-  if (normal.isZero(0)) return counts;
-  constexpr int kPlaces = 16;  // 11 bins, and one for pairs without
+HWY_FLATTEN PairCounts count(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
   std::int32_t places[kCopies][3][kPlaces] = {};
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const PairBinner<Lanes> binner(support, normal, form);
-    PairBins bins;
-    const auto end = static_cast<std::size_t>(padded(support.count));  // without a normal the padding has no bins
-    for (std::size_t first = 0; first < end; first += PairBins::kMost) {
-      const std::size_t count = std::min(PairBins::kMost, end - first);
-      for (std::size_t i = 0; i < count; i += kLanes) binner.bin(first + i, i, bins);
-      for (std::size_t i = 0; i < count; i += kCopies)
-        for (std::size_t copy = 0; copy < kCopies; ++copy) {
-          ++places[copy][0][bins.theta[i + copy]];
-          ++places[copy][1][bins.alpha[i + copy]];
-          ++places[copy][2][bins.phi[i + copy]];
-        }
-    }
-  });
+  const PairBinner binner(support, normal, form);
+  PairBins bins;
+  const auto end = static_cast<std::size_t>(padded(support.count));  // without a normal the padding has no bins
+  for (std::size_t first = 0; first < end; first += PairBins::kMost) {
+    const std::size_t many = std::min(PairBins::kMost, end - first);
+    for (std::size_t i = 0; i < many; i += kLanes) binner.bin(first + i, i, bins);
+    for (std::size_t i = 0; i < many; i += kCopies)
+      for (std::size_t copy = 0; copy < kCopies; ++copy) {
+        ++places[copy][0][bins.theta[i + copy]];
+        ++places[copy][1][bins.alpha[i + copy]];
+        ++places[copy][2][bins.phi[i + copy]];
+      }
+  }
+  PairCounts counts;
   for (int bin = 0; bin < kFpfhSize; ++bin)
     for (const auto& copy : places) counts.bins[bin] += copy[bin / kFpfhBins][bin % kFpfhBins];
   for (int bin = 0; bin < kFpfhBins; ++bin) counts.pairs += counts.bins[bin];
   return counts;
 }
 
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(count);
+
+PairCounts count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
+  return normal.isZero(0) ? PairCounts() : HWY_DYNAMIC_DISPATCH(count)(support, normal, form);
+}
+
 }  // namespace corral
+#endif

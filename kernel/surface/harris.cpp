@@ -8,13 +8,18 @@
 #include "kernel/error.h"
 #include "kernel/surface/crowd_limit.h"
 #include "kernel/surface/local_maxima.h"
-#include "kernel/surface/plane_fit.h"
 #include "kernel/surface/search/point_grid.h"
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/harris.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/surface/plane_fit-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
-constexpr double kSmallestResponse = 1e-9;
 constexpr int kCellsPerBlock = 256;
 
 int block_count(const PointGrid& grid) { return (grid.cells() + kCellsPerBlock - 1) / kCellsPerBlock; }
@@ -31,13 +36,9 @@ class HarrisOperator {
         response_(grid.x().size(), 0.0) {}
 
   AlignedColumn run(const ParallelFor& parallel) {
-    parallel(block_count(grid_), [this](int block) {
-      vectorized([&](auto kind) { fit<typename decltype(kind)::Lanes>(block_of(block)); });
-    });
+    parallel(block_count(grid_), [this](int block) { fit(block_of(block)); });
     fits_.solve_all(parallel);
-    parallel(block_count(grid_), [this](int block) {
-      vectorized([&](auto kind) { respond<typename decltype(kind)::Lanes>(block_of(block)); });
-    });
+    parallel(block_count(grid_), [this](int block) { respond(block_of(block)); });
     return std::move(response_);
   }
 
@@ -50,39 +51,37 @@ class HarrisOperator {
     return {first, last};
   }
 
-  template <class Lanes>
-  CORRAL_INLINE void fit(const Block& block) {
+  HWY_FLATTEN void fit(const Block& block) {
     std::int64_t neighbors = 0;
     PackedSlots<3> places;
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
-      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
-        neighbors += fits_.fit<Lanes>(static_cast<std::size_t>(slot), grid_, places, squared_);
+        neighbors += fits_.fit(static_cast<std::size_t>(slot), grid_, places, squared_);
         if (crowd_.is_exceeded_by(neighbors)) crowd_.add(neighbors);  // to the end of a crowd it would take long
       }
     }
     crowd_.add(neighbors);
   }
 
-  template <class Lanes>
-  CORRAL_INLINE void respond(const Block& block) {
+  HWY_FLATTEN void respond(const Block& block) {
     PackedSlots<6> places;  // and normals
     for (int cell = block.first_cell; cell < block.last_cell; ++cell) {
-      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
-                            around_.end(cell));
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z(), &fits_.nx, &fits_.ny, &fits_.nz}, around_.begin(cell),
+                     around_.end(cell));
       for (int i = grid_.begin(cell); i < grid_.end(cell); ++i) {
         const auto slot = static_cast<std::size_t>(i);
         const Lanes zero = Lanes::fill(0);
         Lanes xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
         const double *nx = places[3], *ny = places[4], *nz = places[5];
-        visit_within<Lanes>(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
-                            [&](auto inside, Lanes, Lanes, Lanes, int other) {
-                              const Lanes a = select(inside, Lanes::load(nx + other), zero),
-                                          b = select(inside, Lanes::load(ny + other), zero),
-                                          c = select(inside, Lanes::load(nz + other), zero);
-                              xx = xx + a * a, xy = xy + a * b, xz = xz + a * c;
-                              yy = yy + b * b, yz = yz + b * c, zz = zz + c * c;
-                            });
+        visit_within(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_,
+                     [&](auto inside, Lanes, Lanes, Lanes, int other) HWY_ATTR {
+                       const Lanes a = select(inside, Lanes::load(nx + other), zero),
+                                   b = select(inside, Lanes::load(ny + other), zero),
+                                   c = select(inside, Lanes::load(nz + other), zero);
+                       xx = xx + a * a, xy = xy + a * b, xz = xz + a * c;
+                       yy = yy + b * b, yz = yz + b * c, zz = zz + c * c;
+                     });
         response_[slot] = determinant({sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)});
       }
     }
@@ -105,13 +104,28 @@ class HarrisOperator {
   AlignedColumn response_;
 };
 
+AlignedColumn respond(const PointGrid& grid, const CellNeighborhoods& around, double radius,
+                      const ParallelFor& parallel) {
+  return HarrisOperator(grid, around, radius).run(parallel);
+}
+
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+namespace {
+constexpr double kSmallestResponse = 1e-9;
+}  // namespace
+
+HWY_EXPORT(respond);
 
 Eigen::VectorXd harris_response(const Points& vertices, double radius, const ParallelFor& parallel) {
   require_positive("harris_response", "radius", radius);
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
-  const AlignedColumn by_slot = HarrisOperator(grid, around, radius).run(parallel);
+  const AlignedColumn by_slot = HWY_DYNAMIC_DISPATCH(respond)(grid, around, radius, parallel);
   Eigen::VectorXd response(vertices.rows());
   for (int slot = 0; slot < grid.size(); ++slot) response(grid.row(slot)) = by_slot[static_cast<std::size_t>(slot)];
   return response;
@@ -125,10 +139,11 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
   const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
   const CellNeighborhoods around(grid, 1);
   Keypoints keypoints;
-  const AlignedColumn response = HarrisOperator(grid, around, radius).run(parallel);
+  const AlignedColumn response = HWY_DYNAMIC_DISPATCH(respond)(grid, around, radius, parallel);
   keypoints.vertices = sorted_rows(grid, local_maxima(grid, around, response, {radius * radius, kSmallestResponse}));
   keypoints.candidates = static_cast<int>(keypoints.vertices.size());
   return keypoints;
 }
 
 }  // namespace corral
+#endif

@@ -7,10 +7,16 @@
 
 #include "kernel/surface/crowd_limit.h"
 #include "kernel/surface/local_maxima.h"
-#include "kernel/surface/plane_fit.h"
 #include "kernel/surface/search/point_grid.h"
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/iss.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/surface/plane_fit-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr char kWho[] = "detect_iss";
@@ -29,37 +35,50 @@ void visit_cells(const PointGrid& grid, const ParallelFor& parallel, const Visit
   });
 }
 
-/// w_j of every vertex.
-Eigen::VectorXd density_weights(const Points& vertices, double radius, const ParallelFor& parallel) {
-  const PointGrid grid = PointGrid::for_radius(vertices, radius, 1);
-  const CellNeighborhoods around(grid, 1);
-  CrowdLimit crowd({kWho, "density radius", radius, 2000, 12}, grid.size());
-  Eigen::VectorXd weights(vertices.rows());
-  visit_cells(grid, parallel, [&](int first, int last) {
+/// Counts the vertices around those of some cells, for weights.
+class DensityOperator {
+ public:
+  DensityOperator(const Points& vertices, double radius)
+      : squared_(squared_below(radius)),
+        grid_(PointGrid::for_radius(vertices, radius, 1)),
+        around_(grid_, 1),
+        crowd_({kWho, "density radius", radius, 2000, 12}, grid_.size()),
+        weights_(vertices.rows()) {}
+
+  /// w_j of every vertex.
+  Eigen::VectorXd run(const ParallelFor& parallel) {
+    visit_cells(grid_, parallel, [this](int first, int last) { weigh(first, last); });
+    return std::move(weights_);
+  }
+
+ private:
+  HWY_FLATTEN void weigh(int first, int last) {
+    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     std::int64_t neighbors = 0;
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
-      PackedSlots<3> places;
-      for (int cell = first; cell < last; ++cell) {
-        places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, around.begin(cell), around.end(cell));
-        for (int slot = grid.begin(cell); slot < grid.end(cell); ++slot) {
-          const auto at = static_cast<std::size_t>(slot);
-          Lanes count = zero;
-          visit_within<Lanes>(
-              places, grid.x()[at], grid.y()[at], grid.z()[at], squared_below(radius),
-              [&](auto inside, Lanes, Lanes, Lanes, int) { count = count + select(inside, one, zero); });
-          const double found = sum(count);
-          weights(grid.row(slot)) = 1 / found;
-          neighbors += static_cast<std::int64_t>(found);
-          if (crowd.is_exceeded_by(neighbors)) crowd.add(neighbors);
-        }
+    PackedSlots<3> places;
+    for (int cell = first; cell < last; ++cell) {
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z()}, around_.begin(cell), around_.end(cell));
+      for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
+        const auto at = static_cast<std::size_t>(slot);
+        Lanes count = zero;
+        visit_within(places, grid_.x()[at], grid_.y()[at], grid_.z()[at], squared_,
+                     [&](auto inside, Lanes, Lanes, Lanes, int)
+                         HWY_ATTR { count = count + select(inside, one, zero); });
+        const double found = sum(count);
+        weights_(grid_.row(slot)) = 1 / found;
+        neighbors += static_cast<std::int64_t>(found);
+        if (crowd_.is_exceeded_by(neighbors)) crowd_.add(neighbors);
       }
-    });
-    crowd.add(neighbors);
-  });
-  return weights;
-}
+    }
+    crowd_.add(neighbors);
+  }
+
+  double squared_;
+  PointGrid grid_;
+  CellNeighborhoods around_;
+  CrowdLimit crowd_;
+  Eigen::VectorXd weights_;
+};
 
 /// Saliencies, in two passes: the scatter of every slot, then the eigenvalues of eight at a time.
 class SaliencyOperator {
@@ -81,15 +100,12 @@ class SaliencyOperator {
   void run(const ParallelFor& parallel) {
     const AlignedColumn weights =
         grid_.by_slot(options_.weights == IssWeights::None ? Eigen::VectorXd::Ones(vertices_.rows())
-                                                           : density_weights(vertices_, density_, parallel));
-    visit_cells(grid_, parallel, [&](int first, int last) {
-      vectorized([&](auto kind) { scatter<typename decltype(kind)::Lanes>(first, last, weights); });
-    });
+                                                           : DensityOperator(vertices_, density_).run(parallel));
+    visit_cells(grid_, parallel, [&](int first, int last) { scatter(first, last, weights); });
     constexpr std::size_t kBlock = 4096;
     parallel(static_cast<int>((saliency_.size() + kBlock - 1) / kBlock), [&](int block) {
       const std::size_t first = static_cast<std::size_t>(block) * kBlock;
-      vectorized(
-          [&](auto kind) { solve<typename decltype(kind)::Lanes>(first, std::min(first + kBlock, saliency_.size())); });
+      solve(first, std::min(first + kBlock, saliency_.size()));
     });
   }
 
@@ -109,14 +125,13 @@ class SaliencyOperator {
   static constexpr int kReach = 2;
 
   /// The moments of some cells' slots about their own places; none where too few are around.
-  template <class Lanes>
-  CORRAL_INLINE void scatter(int first_cell, int last_cell, const AlignedColumn& weights) {
+  HWY_FLATTEN void scatter(int first_cell, int last_cell, const AlignedColumn& weights) {
     std::int64_t neighbors = 0;
     PackedSlots<4> places;  // and weights
     for (int cell = first_cell; cell < last_cell; ++cell) {
-      places.collect<Lanes>({&grid_.x(), &grid_.y(), &grid_.z(), &weights}, around_.begin(cell), around_.end(cell));
+      places.collect({&grid_.x(), &grid_.y(), &grid_.z(), &weights}, around_.begin(cell), around_.end(cell));
       for (int slot = grid_.begin(cell); slot < grid_.end(cell); ++slot) {
-        neighbors += scatter_around<Lanes>(static_cast<std::size_t>(slot), places);
+        neighbors += scatter_around(static_cast<std::size_t>(slot), places);
         if (crowd_.is_exceeded_by(neighbors)) crowd_.add(neighbors);
       }
     }
@@ -124,20 +139,19 @@ class SaliencyOperator {
   }
 
   /// Returns how many vertices are within the larger radius.
-  template <class Lanes>
-  CORRAL_INLINE std::int64_t scatter_around(std::size_t slot, const PackedSlots<4>& places) {
+  HWY_INLINE std::int64_t scatter_around(std::size_t slot, const PackedSlots<4>& places) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1), non_max = Lanes::fill(squared_below(non_max_));
     Lanes n = zero, close = zero, w = zero, xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
-    visit_within<Lanes>(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_below(salient_),
-                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int other) {
-                          close = close + select(dx * dx + dy * dy + dz * dz <= non_max, one, zero);
-                          const Lanes weight = select(inside, Lanes::load(places[3] + other), zero);
-                          dx = select(inside, dx, zero);  // infinite in the padding
-                          const Lanes wx = weight * dx, wy = weight * dy, wz = weight * dz;
-                          n = n + select(inside, one, zero), w = w + weight;
-                          xx = xx + wx * dx, xy = xy + wx * dy, xz = xz + wx * dz;
-                          yy = yy + wy * dy, yz = yz + wy * dz, zz = zz + wz * dz;
-                        });
+    visit_within(places, grid_.x()[slot], grid_.y()[slot], grid_.z()[slot], squared_below(salient_),
+                 [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int other) HWY_ATTR {
+                   close = close + select(dx * dx + dy * dy + dz * dz <= non_max, one, zero);
+                   const Lanes weight = select(inside, Lanes::load(places[3] + other), zero);
+                   dx = select(inside, dx, zero);  // infinite in the padding
+                   const Lanes wx = weight * dx, wy = weight * dy, wz = weight * dz;
+                   n = n + select(inside, one, zero), w = w + weight;
+                   xx = xx + wx * dx, xy = xy + wx * dy, xz = xz + wx * dz;
+                   yy = yy + wy * dy, yz = yz + wy * dz, zz = zz + wz * dz;
+                 });
     close_[slot] = sum(close);
     const double count = sum(n);
     const auto most = static_cast<std::int64_t>(std::max(count, close_[slot]));
@@ -148,12 +162,11 @@ class SaliencyOperator {
     return most;
   }
 
-  template <class Lanes>
-  CORRAL_INLINE void solve(std::size_t first, std::size_t last) {
+  HWY_FLATTEN void solve(std::size_t first, std::size_t last) {
     const Lanes zero = Lanes::fill(0), gamma_21 = Lanes::fill(options_.gamma_21),
                 gamma_32 = Lanes::fill(options_.gamma_32), flat = Lanes::fill(kFlat);
     for (std::size_t i = first; i < last; i += kLanes) {
-      const auto moment = [&](std::size_t which) { return Lanes::load(&moments_[which][i]); };
+      const auto moment = [&](std::size_t which) HWY_ATTR { return Lanes::load(&moments_[which][i]); };
       const SymmetricEigen<Lanes> eigen({moment(0), moment(1), moment(2), moment(3), moment(4), moment(5)});
       const Lanes low = smaller(eigen.value[0], eigen.value[1]), high = larger(eigen.value[0], eigen.value[1]);
       const Lanes e1 = larger(high, eigen.value[2]), e3 = smaller(low, eigen.value[2]),
@@ -175,16 +188,8 @@ class SaliencyOperator {
   AlignedColumn saliency_;
 };
 
-void check(double resolution, const IssOptions& options) {
-  require_positive(kWho, "resolution", resolution);
-  validate_options(options, kWho);
-}
-
-}  // namespace
-
-Eigen::VectorXd iss_saliency(const Mesh& mesh, double resolution, const IssOptions& options,
-                             const ParallelFor& parallel) {
-  check(resolution, options);
+Eigen::VectorXd saliency_of(const Mesh& mesh, double resolution, const IssOptions& options,
+                            const ParallelFor& parallel) {
   SaliencyOperator found(mesh.vertices, resolution, options);
   found.run(parallel);
   Eigen::VectorXd saliency(mesh.vertices.rows());
@@ -193,8 +198,7 @@ Eigen::VectorXd iss_saliency(const Mesh& mesh, double resolution, const IssOptio
   return saliency;
 }
 
-Keypoints detect_iss(const Mesh& mesh, double resolution, const IssOptions& options, const ParallelFor& parallel) {
-  check(resolution, options);
+Keypoints detect(const Mesh& mesh, double resolution, const IssOptions& options, const ParallelFor& parallel) {
   SaliencyOperator found(mesh.vertices, resolution, options);
   found.run(parallel);
   Indices slots = found.maxima();
@@ -206,4 +210,34 @@ Keypoints detect_iss(const Mesh& mesh, double resolution, const IssOptions& opti
   return keypoints;
 }
 
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+namespace {
+
+void check(double resolution, const IssOptions& options) {
+  require_positive("detect_iss", "resolution", resolution);
+  validate_options(options, "detect_iss");
+}
+
+}  // namespace
+
+HWY_EXPORT(saliency_of);
+HWY_EXPORT(detect);
+
+Eigen::VectorXd iss_saliency(const Mesh& mesh, double resolution, const IssOptions& options,
+                             const ParallelFor& parallel) {
+  check(resolution, options);
+  return HWY_DYNAMIC_DISPATCH(saliency_of)(mesh, resolution, options, parallel);
+}
+
+Keypoints detect_iss(const Mesh& mesh, double resolution, const IssOptions& options, const ParallelFor& parallel) {
+  check(resolution, options);
+  return HWY_DYNAMIC_DISPATCH(detect)(mesh, resolution, options, parallel);
+}
+
 }  // namespace corral
+#endif

@@ -3,7 +3,14 @@
 
 #include <algorithm>
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/local_maxima.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 class LocalMaxima {
@@ -12,21 +19,17 @@ class LocalMaxima {
               const MaximumRule& rule)
       : grid_(grid), around_(around), values_(values), squared_(rule.squared_radius), smallest_(rule.smallest) {}
 
-  Indices find() const {
+  HWY_FLATTEN Indices find() const {
     Indices maxima;
-    vectorized([&](auto kind) {
-      using Lanes = typename decltype(kind)::Lanes;
-      for (int cell = 0; cell < grid_.cells(); ++cell) {
-        const int first = grid_.begin(cell), last = grid_.end(cell);
-        int top = first;
-        for (int slot = first; slot < last; ++slot)
-          if (at(slot) > at(top)) top = slot;
-        for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
-          if (at(slot) >= smallest_ && !is_beaten(slot, top) &&
-              is_highest<Lanes>(slot, around_.begin(cell), around_.end(cell)))
-            maxima.push_back(slot);
-      }
-    });
+    for (int cell = 0; cell < grid_.cells(); ++cell) {
+      const int first = grid_.begin(cell), last = grid_.end(cell);
+      int top = first;
+      for (int slot = first; slot < last; ++slot)
+        if (at(slot) > at(top)) top = slot;
+      for (int slot = first; slot < last; ++slot)  // most are beaten by the top of their cell
+        if (at(slot) >= smallest_ && !is_beaten(slot, top) && is_highest(slot, around_.begin(cell), around_.end(cell)))
+          maxima.push_back(slot);
+    }
     return maxima;
   }
 
@@ -42,18 +45,16 @@ class LocalMaxima {
   }
 
   /// Whether no slot of some ranges beats one. The range of its own cell comes first: most are beaten there.
-  template <class Lanes>
-  CORRAL_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
+  HWY_INLINE bool is_highest(int slot, const SlotRange* first, const SlotRange* last) const {
     const SlotRange* const home = std::find_if(first, last, [&](const SlotRange& range) { return slot < range.end; });
-    if (beats<Lanes>(*home, slot)) return false;
+    if (beats(*home, slot)) return false;
     for (const SlotRange* range = first; range != last; ++range)
-      if (range != home && beats<Lanes>(*range, slot)) return false;
+      if (range != home && beats(*range, slot)) return false;
     return true;
   }
 
   /// Whether a slot of a range beats another one.
-  template <class Lanes>
-  CORRAL_INLINE bool beats(const SlotRange& range, int slot) const {
+  HWY_INLINE bool beats(const SlotRange& range, int slot) const {
     const auto own = static_cast<std::size_t>(slot);
     const Lanes value = Lanes::fill(values_[own]), x = Lanes::fill(grid_.x()[own]), y = Lanes::fill(grid_.y()[own]),
                 z = Lanes::fill(grid_.z()[own]), squared = Lanes::fill(squared_);
@@ -63,7 +64,7 @@ class LocalMaxima {
                   dz = Lanes::load(&grid_.z()[at]) - z;
       unsigned left = bits(value <= Lanes::load(&values_[at])) & bits(dx * dx + dy * dy + dz * dz <= squared);
       for (; left != 0; left &= left - 1)  // those behind the range count as well
-        if (is_beaten(slot, i + __builtin_ctz(left))) return true;
+        if (is_beaten(slot, i + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(left)))) return true;
     }
     return false;
   }
@@ -75,11 +76,23 @@ class LocalMaxima {
   double smallest_;
 };
 
+Indices find_maxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& values,
+                    const MaximumRule& rule) {
+  return LocalMaxima(grid, around, values, rule).find();
+}
+
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(find_maxima);
 
 Indices local_maxima(const PointGrid& grid, const CellNeighborhoods& around, const AlignedColumn& values,
                      const MaximumRule& rule) {
-  return LocalMaxima(grid, around, values, rule).find();
+  return HWY_DYNAMIC_DISPATCH(find_maxima)(grid, around, values, rule);
 }
 
 Indices sorted_rows(const PointGrid& grid, const Indices& slots) {
@@ -90,3 +103,4 @@ Indices sorted_rows(const PointGrid& grid, const Indices& slots) {
 }
 
 }  // namespace corral
+#endif

@@ -22,6 +22,7 @@ struct NormalOptions {
 /// Departs   The authors turn every normal towards the origin, which on closed models flips neighbours against each other;
 ///           with faces we take their side, on a noisy mesh that of its own faces.
 /// Throws    InvalidInput for fewer than 3 neighbours.
+/// Plain form  tests/support/reference_surface.h
 Points estimate_normals(const Mesh& mesh, const NormalOptions& options = {}, const ParallelFor& parallel = one_by_one);
 
 struct NormalsAndResolution {

@@ -11,6 +11,7 @@
 
 #include "kernel/error.h"
 #include "kernel/surface/keep_described.h"
+#include "kernel/surface/support_loops.h"
 
 namespace corral {
 namespace {
@@ -39,51 +40,14 @@ Eigen::Vector3d towards_majority(const Eigen::Vector3d& axis, int ahead, const S
   return positive < 3 ? Eigen::Vector3d(-axis) : axis;
 }
 
-/// How many of the support lie ahead on each of two axes, or beside.
-std::array<int, 2> count_ahead(const std::array<Eigen::Vector3d, 2>& axes, const Support& support) {
-  std::array<int, 2> ahead;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
-    Lanes count[2] = {zero, zero}, axis[2][3];
-    for (std::size_t which : {0, 1})
-      for (int i = 0; i < 3; ++i) axis[which][i] = Lanes::fill(axes[which](i));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
-      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
-      for (std::size_t which : {0, 1}) {
-        const Lanes along = x * axis[which][0] + y * axis[which][1] + z * axis[which][2];
-        count[which] = select(zero <= along, count[which] + one, count[which]);
-      }
-    }
-    const int padding = padded(support.count) - support.count;  // lies at the point: ahead
-    for (std::size_t which : {0, 1}) ahead[which] = static_cast<int>(sum(count[which])) - padding;
-  });
-  return ahead;
-}
-
 }  // namespace
 
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius) {
   if (support.count < kSmallestFrame) return std::nullopt;
+  const WeightedMoments sums = sum_moments(support, radius);
   Eigen::Matrix3d moments;
-  double weights = 0;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes limit = Lanes::fill(radius), zero = Lanes::fill(0);
-    Lanes w = zero, xx = zero, xy = zero, xz = zero, yy = zero, yz = zero, zz = zero;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(support.count); i += kLanes) {
-      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]),
-                  distance = Lanes::load(&support.distance[i]);
-      const Lanes weight = select(zero < distance, limit - distance, zero);
-      const Lanes wx = weight * x, wy = weight * y, wz = weight * z;
-      w = w + weight;
-      xx = xx + wx * x, xy = xy + wx * y, xz = xz + wx * z, yy = yy + wy * y, yz = yz + wy * z, zz = zz + wz * z;
-    }
-    weights = sum(w);
-    const double m01 = sum(xy), m02 = sum(xz), m12 = sum(yz);
-    moments << sum(xx), m01, m02, m01, sum(yy), m12, m02, m12, sum(zz);
-  });
-  moments /= weights;
+  moments << sums.xx, sums.xy, sums.xz, sums.xy, sums.yy, sums.yz, sums.xz, sums.yz, sums.zz;
+  moments /= sums.weights;
   if (!moments.allFinite()) return std::nullopt;                         // every vertex exactly at the rim
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);  // ascending eigenvalues
   const std::array<Eigen::Vector3d, 2> axes{solver.eigenvectors().col(2), solver.eigenvectors().col(0)};

@@ -44,6 +44,7 @@ struct ShotOptions {
 /// support lies; on an exact tie to the side of most of the five vertices around the median distance. y = z cross x.
 /// Source    [tombari2010shot].
 /// Returns   absent for fewer than 5 vertices, or where all lie so that no frame is finite.
+/// Plain form  tests/support/reference_shot.h
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
 /// The SHOT histogram of a support, unit length; absent if no vertex with a normal is in it.
@@ -60,6 +61,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 ///           azimuth, the vote is in sector 0: that of the other three axes, or all of it (product).
 /// Source    [tombari2010shot]; additive shares, L2 norm and order as in the library that [yang2017evaluation] ran.
 /// Departs   From that library: the cosine ends with its last bin (`pcl-bug` wraps), and double decides what float does there.
+/// Plain form  tests/support/reference_shot.h
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               ShotForm form = ShotForm::Additive);
 

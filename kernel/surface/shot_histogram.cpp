@@ -6,7 +6,14 @@
 
 #include "kernel/surface/shot.h"
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/shot_histogram.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr int kCosines = 11;
@@ -47,12 +54,11 @@ constexpr double kSlope = 0.41421356237309503;  // tan(22.5 degrees) = 1 / tan(6
 
 /// The angle of a tangent within kSlope, in units of 45 degrees: directions are measured from 22.5 degrees, where
 /// tan(angle - 22.5 degrees) = (y - x kSlope) / (x + y kSlope), so that there are no cases.
-template <class Lanes>
-CORRAL_INLINE Lanes octants(const Lanes& ratio) {
+HWY_INLINE Lanes octants(const Lanes& ratio) {
   // Eight terms of a polynomial, interpolated at the Chebyshev nodes of the square, are within 1e-12 of the angle.
   constexpr double c[] = {1.2732395447342011,  -0.42441318086014196, 0.25464782050210991,  -0.18188719071878606,
                           0.14137360416332489, -0.11449673936626147, 0.088798241426864804, -0.047943967449120126};
-  const auto fill = [](double number) { return Lanes::fill(number); };
+  const auto fill = [](double number) HWY_ATTR { return Lanes::fill(number); };
   const Lanes square = ratio * ratio, fourth = square * square;
   const Lanes low = (fill(c[0]) + fill(c[1]) * square) + (fill(c[2]) + fill(c[3]) * square) * fourth;
   const Lanes high = (fill(c[4]) + fill(c[5]) * square) + (fill(c[6]) + fill(c[7]) * square) * fourth;
@@ -60,17 +66,15 @@ CORRAL_INLINE Lanes octants(const Lanes& ratio) {
 }
 
 /// To the nearest whole number, halves to the even one; for small numbers.
-template <class Lanes>
-CORRAL_INLINE Lanes rounded(const Lanes& number) {
+HWY_INLINE Lanes rounded(const Lanes& number) {
   constexpr double kWhole = 6755399441055744;  // 1.5 * 2^52: beside it there are whole numbers only
   return (number + Lanes::fill(kWhole)) - Lanes::fill(kWhole);
 }
 
 /// Turns places on the surface around a point into votes.
-template <class Lanes>
 class Voter {
  public:
-  CORRAL_INLINE Voter(const Support& support, const LocalReferenceFrame& frame, double radius, ShotForm form)
+  HWY_INLINE Voter(const Support& support, const LocalReferenceFrame& frame, double radius, ShotForm form)
       : support_(support),
         halves_(fill(2 / radius)),
         half_radius_(fill(radius / 2)),
@@ -81,7 +85,7 @@ class Voter {
   }
 
   /// Eight vertices from the i-th on, into the places from `at` on.
-  CORRAL_INLINE void vote(std::size_t i, std::size_t at, Votes& votes) const {
+  HWY_INLINE void vote(std::size_t i, std::size_t at, Votes& votes) const {
     const Lanes zero = fill(0), one = fill(1), half = fill(0.5);
     const Lanes nx = Lanes::load(&support_.nx[i]), ny = Lanes::load(&support_.ny[i]), nz = Lanes::load(&support_.nz[i]);
     Lanes share[Votes::kAxes], given[Votes::kAxes];
@@ -132,17 +136,17 @@ class Voter {
     store_shares(share, given, at, votes);
     unsigned without_normal = bits(nx == zero) & bits(ny == zero) & bits(nz == zero);
     for (; without_normal != 0; without_normal &= without_normal - 1)
-      votes.silence(at + static_cast<std::size_t>(__builtin_ctz(without_normal)));
+      votes.silence(at + hwy::Num0BitsBelowLS1Bit_Nonzero32(without_normal));
   }
 
  private:
-  static CORRAL_INLINE Lanes fill(double number) { return Lanes::fill(number); }
-  CORRAL_INLINE Lanes along(int axis, const Lanes& x, const Lanes& y, const Lanes& z) const {
+  static HWY_INLINE Lanes fill(double number) { return Lanes::fill(number); }
+  HWY_INLINE Lanes along(int axis, const Lanes& x, const Lanes& y, const Lanes& z) const {
     return axes_[axis][0] * x + axes_[axis][1] * y + axes_[axis][2] * z;
   }
   /// `share`: what each axis takes from the own bin, `given`: what of it the bin beside gets.
-  CORRAL_INLINE void store_shares(const Lanes (&share)[Votes::kAxes], const Lanes (&given)[Votes::kAxes],
-                                  std::size_t at, Votes& votes) const {
+  HWY_INLINE void store_shares(const Lanes (&share)[Votes::kAxes], const Lanes (&given)[Votes::kAxes], std::size_t at,
+                               Votes& votes) const {
     for (int axis = 0; axis < Votes::kAxes; ++axis) given[axis].store(&votes.share[axis][at]);
     (fill(4) - ((share[0] + share[1]) + (share[2] + share[3]))).store(&votes.rest[at]);
     if (!is_product_) return;
@@ -185,15 +189,13 @@ void add_products(const Votes& votes, std::size_t count, Histograms& histograms)
     }
 }
 
-/// The copies added, each volume at its place, at length one; nothing if that is impossible. Clears them.
-template <class Lanes>
-CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(Histograms& histograms) {
+/// The copies added, each volume at its place, at length one; nothing if that is impossible.
+HWY_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histograms) {
   double values[kShotSize + kVolume];
   for (int volume = 0; volume < kPlaces / kVolume; ++volume)
     for (int i = 0; i < kVolume; i += kLanes) {  // what stands behind a volume is written over by the next
-      const auto load = [&](int copy) { return Lanes::load(&histograms.bins[copy][volume * kVolume + i]); };
+      const auto load = [&](int copy) HWY_ATTR { return Lanes::load(&histograms.bins[copy][volume * kVolume + i]); };
       ((load(0) + load(1)) + (load(2) + load(3))).store(&values[volume * kCosines + i]);
-      for (auto& copy : histograms.bins) Lanes::fill(0).store(&copy[volume * kVolume + i]);
     }
   Lanes squares = Lanes::fill(0);
   for (int i = 0; i < kShotSize; i += kLanes) {
@@ -207,26 +209,34 @@ CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(Histograms& histograms) 
   return result;
 }
 
+HWY_FLATTEN std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame,
+                                                          double radius, ShotForm form) {
+  Histograms histograms;
+  const auto add = form == ShotForm::Product ? add_products : add_one_axis_at_a_time;
+  Votes votes;
+  const Voter voter(support, frame, radius, form);
+  const auto end = static_cast<std::size_t>(padded(support.count));  // without a normal the padding has no votes
+  for (std::size_t first = 0; first < end; first += Votes::kMost) {
+    const std::size_t count = std::min<std::size_t>(Votes::kMost, end - first);
+    for (std::size_t i = 0; i < count; i += kLanes) voter.vote(first + i, i, votes);
+    add(votes, count, histograms);
+  }
+  return normalized(histograms);
+}
+
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(shot_histogram);
 
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               ShotForm form) {
-  std::optional<Eigen::VectorXd> result;
-  thread_local Histograms histograms;  // stays in the cache, empty between the calls
-  const auto add = form == ShotForm::Product ? add_products : add_one_axis_at_a_time;
-  Votes votes;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Voter<Lanes> voter(support, frame, radius, form);
-    const auto end = static_cast<std::size_t>(padded(support.count));  // without a normal the padding has no votes
-    for (std::size_t first = 0; first < end; first += Votes::kMost) {
-      const std::size_t count = std::min<std::size_t>(Votes::kMost, end - first);
-      for (std::size_t i = 0; i < count; i += kLanes) voter.vote(first + i, i, votes);
-      add(votes, count, histograms);
-    }
-    result = normalized<Lanes>(histograms);
-  });
-  return result;
+  return HWY_DYNAMIC_DISPATCH(shot_histogram)(support, frame, radius, form);
 }
 
 }  // namespace corral
+#endif

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "kernel/surface/support_loops.h"
+
 namespace corral {
 namespace {
 
@@ -17,13 +19,7 @@ void measure(Support& support) {
        {&support.x, &support.y, &support.z, &support.distance, &support.nx, &support.ny, &support.nz})
     std::fill(column->begin() + static_cast<std::ptrdiff_t>(count), column->begin() + static_cast<std::ptrdiff_t>(end),
               0.0);
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (std::size_t i = 0; i < end; i += kLanes) {
-      const Lanes x = Lanes::load(&support.x[i]), y = Lanes::load(&support.y[i]), z = Lanes::load(&support.z[i]);
-      square_root(x * x + y * y + z * z).store(&support.distance[i]);
-    }
-  });
+  measure_support(support);
 }
 
 }  // namespace
@@ -85,30 +81,9 @@ void SupportFinder::move_to(int cell, Place& place, Support& support) const {
 
 void SupportFinder::collect(std::size_t slot, const std::vector<SlotRange>& ranges, Support& support,
                             bool with_rows) const {
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Lanes x = Lanes::fill(grid_.x()[slot]), y = Lanes::fill(grid_.y()[slot]), z = Lanes::fill(grid_.z()[slot]),
-                squared = Lanes::fill(squared_), zero = Lanes::fill(0);
-    const double* const from[] = {grid_.x().data(), grid_.y().data(), grid_.z().data(),
-                                  nx_.data(),       ny_.data(),       nz_.data()};
-    double* const to[] = {support.x.data(),  support.y.data(),  support.z.data(),
-                          support.nx.data(), support.ny.data(), support.nz.data()};
-    std::size_t count = 0;
-    int at = 0;
-    // By whole cache lines: what else stands in them lies beyond the radius, or in the next range, which goes on behind.
-    for (const SlotRange& range : ranges)
-      for (at = std::max(at, range.begin / kLanes * kLanes); at < range.end; at += kLanes) {
-        const Lanes dx = Lanes::load(from[0] + at) - x, dy = Lanes::load(from[1] + at) - y,
-                    dz = Lanes::load(from[2] + at) - z, away = dx * dx + dy * dy + dz * dz;
-        const unsigned chosen = bits(away <= squared) & bits(zero < away);
-        if (chosen == 0) continue;
-        dx.pack(chosen, to[0] + count), dy.pack(chosen, to[1] + count), dz.pack(chosen, to[2] + count);
-        for (int i = 3; i < 6; ++i) Lanes::load(from[i] + at).pack(chosen, to[i] + count);
-        if (with_rows) Lanes::load(&rows_[static_cast<std::size_t>(at)]).pack(chosen, &support.rows[count]);
-        count += static_cast<std::size_t>(__builtin_popcount(chosen));
-      }
-    support.count = static_cast<int>(count);
-  });
+  const SlotColumns columns{{grid_.x().data(), grid_.y().data(), grid_.z().data(), nx_.data(), ny_.data(), nz_.data(),
+                             with_rows ? rows_.data() : nullptr}};
+  collect_support(columns, slot, squared_, ranges, support);
 }
 
 void visit_supports(const SupportFinder& finder, const Indices& keypoints, const ParallelFor& parallel,

@@ -6,61 +6,63 @@
 #include <numeric>
 #include <vector>
 
-#include "kernel/vectorized.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/benchmarks/multiply_add_peak.cpp"
+#include <hwy/foreach_target.h>
 
-namespace corral::benchmarks {
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int kRounds = 1 << 19;
-constexpr int kRuns = 25;
 
 /// How many chains of sixteen floats: enough to hide the latency, as few as the registers hold beside the two factors.
-template <class Floats>
-constexpr int kChains = 3;
-template <>
-constexpr int kChains<lanes::Floats8x2> = 6;
-template <>
-constexpr int kChains<lanes::Floats16> = 12;
+constexpr int kChains = HWY_LANES(float) >= 16 ? 12 : HWY_LANES(float) == 8 || HWY_TARGET == HWY_NEON ? 6 : 3;
 
 /// x -> factor * x + term, kRounds times, in every lane of every chain; no two start alike, or they would be computed once.
-template <class Floats>
-CORRAL_INLINE float run_chains(const float* starts, float factor, float term) {
-  constexpr int kCount = kChains<Floats>;
+/// Returns how many operations that are.
+HWY_FLATTEN double run_chains(const float* starts, float factor, float term, float* result) {
   const Floats a = Floats::fill(factor), b = Floats::fill(term);
-  Floats chains[kCount];
-#pragma GCC unroll 16
-  for (int i = 0; i < kCount; ++i) chains[i] = Floats::load(starts + 16 * i);
+  Floats chains[kChains];
+  HWY_UNROLL(16)
+  for (int i = 0; i < kChains; ++i) chains[i] = Floats::load(starts + 16 * i);
   for (int round = 0; round < kRounds; ++round) {
-#pragma GCC unroll 16
-    for (int i = 0; i < kCount; ++i) chains[i] = chains[i] * a + b;
+    HWY_UNROLL(16)
+    for (int i = 0; i < kChains; ++i) chains[i] = chains[i] * a + b;
   }
-#pragma GCC unroll 16
-  for (int i = 1; i < kCount; ++i) chains[0] = chains[0] + chains[i];
-  float values[16];
-  chains[0].store(values);
-  return std::accumulate(values, values + 16, 0.0F);
+  HWY_UNROLL(16)
+  for (int i = 1; i < kChains; ++i) chains[0] = chains[0] + chains[i];
+  *result = sum(chains[0]);
+  return 2.0 * kFloatLanes * kChains * kRounds;
 }
 
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
-double multiply_add_peak() {
-  volatile float factor = 0.5F, term = 1,
-                 result = 0;  // volatile: nothing is computed beforehand, and nothing for nobody
-  std::vector<float> starts(16 * 16);
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(run_chains);
+
+double benchmarks::multiply_add_peak() {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kRuns = 25;
+  volatile float factor = 0.5F, term = 1;  // nothing is computed beforehand
+  std::vector<float> starts(16 * kFloatLanes);
   std::iota(starts.begin(), starts.end(), 0.0F);
   double best = 0;
   for (int run = 0; run < kRuns; ++run) {
-    double operations = 0;
+    float result = 0;
     const auto start = Clock::now();
-    vectorized([&](auto kind) {
-      using Floats = typename decltype(kind)::Floats;
-      operations = 2.0 * 16 * kChains<Floats> * kRounds;
-      result = run_chains<Floats>(starts.data(), factor, term);
-    });
+    const double operations = HWY_DYNAMIC_DISPATCH(run_chains)(starts.data(), factor, term, &result);
     best = std::max(best, operations / std::chrono::duration<double>(Clock::now() - start).count());
+    factor = result > 0 ? 0.5F : 0.25F;  // nothing is computed for nobody
   }
   return best / 1e9;
 }
 
-}  // namespace corral::benchmarks
+}  // namespace corral
+#endif

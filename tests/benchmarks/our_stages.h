@@ -11,7 +11,6 @@
 #include "kernel/surface/iss.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/neighborhood.h"
-#include "kernel/surface/search/point_grid.h"
 #include "kernel/surface/search/resolution.h"
 #include "kernel/surface/shot.h"
 
@@ -19,30 +18,7 @@ namespace corral::ours {
 
 inline double resolution(const Mesh& mesh) { return point_resolution(mesh.vertices); }
 
-/// How many pairs of vertices lie within a radius, by the grid of the hot loops.
-inline double pairs_by_grid(const Mesh& mesh, double radius) {
-  const PointGrid grid = PointGrid::for_radius(mesh.vertices, radius, 1);
-  const CellNeighborhoods around(grid, 1);
-  double pairs = 0;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    Lanes count = Lanes::fill(0);
-    PackedSlots<3> places;
-    for (int cell = 0; cell < grid.cells(); ++cell) {
-      places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, around.begin(cell), around.end(cell));
-      for (auto slot = static_cast<std::size_t>(grid.begin(cell)); slot < static_cast<std::size_t>(grid.end(cell));
-           ++slot)
-        visit_within<Lanes>(places, grid.x()[slot], grid.y()[slot], grid.z()[slot], radius * radius,
-                            [&](auto inside, Lanes, Lanes, Lanes, int) {
-                              count = count + select(inside, Lanes::fill(1), Lanes::fill(0));
-                            });
-    }
-    pairs = sum(count);
-  });
-  return pairs;
-}
-
-/// The same by CGAL's tree.
+/// How many pairs of vertices lie within a radius, by CGAL's tree.
 inline double pairs_by_tree(const Mesh& mesh, double radius) {
   const PointIndex index(mesh.vertices);
   double pairs = 0;

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "tests/benchmarks/our_stages.h"
+#include "tests/benchmarks/pairs_by_grid.h"
 #include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"
 #include "tests/benchmarks/workload.h"

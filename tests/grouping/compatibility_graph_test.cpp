@@ -34,10 +34,10 @@ Eigen::VectorXd random_numbers(int count, double scale) {
 }
 
 TEST(CompatibilityGraph, RoundedProductIsThatOfTheRoundedNumbers) {
-  for (const VectorLevel level : testing::available_levels())
+  for (const std::int64_t each : testing::available_targets())
     for (const int rows : {1, 7, 40, 333})
       for (const double scale : {1.0, 1e-250, 1e200}) {
-        const testing::ForcedLevel forced(level);
+        const testing::ForcedTarget forced(each);
         const CorrespondenceSet matches = testing::harsh_table(rows, 0.3, 2);
         const Eigen::VectorXd numbers = random_numbers(rows, scale);
         Eigen::VectorXd rounded = numbers, product;

@@ -17,11 +17,12 @@
 namespace corral {
 namespace {
 
-using testing::available_levels;
-using testing::ForcedLevel;
+using testing::available_targets;
+using testing::ForcedTarget;
 using testing::harsh_table;
 using testing::scaled;
 using testing::synthetic;
+using testing::target_name;
 
 /// Far from the origin, tiny, huge, with outliers, of one place, beyond what floats hold.
 std::vector<CorrespondenceSet> tables() {
@@ -49,19 +50,19 @@ std::vector<CorrespondenceSet> tables() {
 }
 
 template <class Check>
-void on_every_level_and_table(Check check) {
-  for (const VectorLevel level : available_levels()) {
-    const ForcedLevel forced(level);
+void on_every_target_and_table(Check check) {
+  for (const std::int64_t each : available_targets()) {
+    const ForcedTarget forced(each);
     int number = 0;
     for (const CorrespondenceSet& matches : tables()) {
-      SCOPED_TRACE("level " + std::to_string(static_cast<int>(level)) + ", table " + std::to_string(number++));
+      SCOPED_TRACE(target_name(each) + ", table " + std::to_string(number++));
       check(matches);
     }
   }
 }
 
 TEST(Filter, DistancesAreWithinTheBound) {
-  on_every_level_and_table([](const CorrespondenceSet& matches) {
+  on_every_target_and_table([](const CorrespondenceSet& matches) {
     const FilterTable table(matches);
     if (table.is_blind()) return;
     FloatColumn squared(static_cast<std::size_t>(table.padded_rows()));
@@ -79,7 +80,7 @@ TEST(Filter, DistancesAreWithinTheBound) {
 
 TEST(Filter, CountsOfConsistentRowsAreNeverTooSmallAndHardlyTooLarge) {
   int exact = 0, counted = 0;
-  on_every_level_and_table([&](const CorrespondenceSet& matches) {
+  on_every_target_and_table([&](const CorrespondenceSet& matches) {
     const FilterTable table(matches);
     for (const double tolerance_pr : {1e-6, 3.0, 1e9}) {
       const double tolerance = tolerance_pr * matches.resolution;
@@ -105,7 +106,7 @@ TEST(Filter, CountsOfConsistentRowsAreNeverTooSmallAndHardlyTooLarge) {
 
 TEST(Filter, RatiosAreBracketed) {
   int decided = 0, asked = 0;
-  on_every_level_and_table([&](const CorrespondenceSet& matches) {
+  on_every_target_and_table([&](const CorrespondenceSet& matches) {
     const FilterTable table(matches);
     const auto size = static_cast<std::size_t>(table.padded_rows());
     for (const double similarity : {1e-9, 0.6, 0.9, 1.0}) {
@@ -137,7 +138,7 @@ TEST(Filter, RatiosAreBracketed) {
 }
 
 TEST(Filter, ResidualsAreBracketed) {
-  on_every_level_and_table([](const CorrespondenceSet& matches) {
+  on_every_target_and_table([](const CorrespondenceSet& matches) {
     const FilterTable table(matches);
     RandomStream random(9);
     for (int pose_number = 0; pose_number < 20; ++pose_number) {

@@ -127,9 +127,9 @@ TEST_P(GrouperProperty, ExactMotionOfTheTargetDoesNotMatter) {
   });
 }
 
-TEST_P(GrouperProperty, VectorLevelDoesNotMatter) {
+TEST_P(GrouperProperty, TargetDoesNotMatter) {
   for_each_case([&](const CorrespondenceSet& matches, RandomStream&) {
-    testing::expect_same_at_every_level(GetParam().group, matches);
+    testing::expect_same_on_every_target(GetParam().group, matches);
   });
 }
 

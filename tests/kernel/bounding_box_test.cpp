@@ -5,6 +5,7 @@
 
 #include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
+#include "tests/support/reference_columns.h"
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -13,13 +14,16 @@ namespace {
 using testing::points_of;
 
 TEST(BoundingBox, HoldsThePointsAndNoMore) {
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     for (const int count : {1, 7, 8, 9, 100}) {
       const Points points = testing::uniform_points(count, static_cast<std::uint64_t>(count));
       const BoundingBox box = bounding_box(points);
-      EXPECT_EQ(box.low, points.colwise().minCoeff());
-      EXPECT_EQ(box.high, points.colwise().maxCoeff());
+      for (int axis = 0; axis < 3; ++axis) {
+        const Extent extent = testing::reference_extent(points.col(axis).data(), count);
+        EXPECT_EQ(box.low(axis), extent.low);
+        EXPECT_EQ(box.high(axis), extent.high);
+      }
       EXPECT_EQ(box.longest_side(), (box.high - box.low).maxCoeff());
     }
   }

@@ -12,6 +12,7 @@
 #include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
+#include "tests/support/reference_spatial_order.h"
 
 namespace corral {
 namespace {
@@ -49,33 +50,12 @@ TEST(SpatialOrder, EveryRowComesOnce) {
   EXPECT_TRUE(spatial_order(Points(0, 3)).empty());
 }
 
-/// Whether rows first .. last - 1 of an order are what the definition makes of them: cut across the longest side of their box,
-/// so that both halves are whole shares, until none is larger than eight.
-bool is_cut(const Points& points, const Indices& order, std::ptrdiff_t first, std::ptrdiff_t last,
-            std::ptrdiff_t share) {
-  while (last - first <= share && share > 8) share /= 8;
-  if (last - first <= share) return true;
-  const auto part = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
-    return Points(points(Indices(order.begin() + from, order.begin() + to), Eigen::all));
-  };
-  const std::ptrdiff_t middle = first + share * ((last - first + share - 1) / share / 2);
-  const Points whole = part(first, last), lower = part(first, middle), upper = part(middle, last);
-  const Eigen::RowVector3d sides = whole.colwise().maxCoeff() - whole.colwise().minCoeff();
-  bool is_apart = false;  // along a longest side, of which there may be several
-  for (int axis = 0; axis < 3; ++axis)
-    is_apart |=
-        sides(axis) >= sides.maxCoeff() - 1e-6 && lower.col(axis).maxCoeff() <= upper.col(axis).minCoeff() + 1e-6;
-  return is_apart && is_cut(points, order, first, middle, share) && is_cut(points, order, middle, last, share);
-}
-
 TEST(SpatialOrder, EveryPartIsCutAcrossItsLongestSide) {
   for (const int count : {1, 7, 8, 9, 16, 63, 64, 65, 100, 513, 4096, 5000, 40000}) {
     const Points points = testing::uniform_points(count, static_cast<std::uint64_t>(count));
-    std::ptrdiff_t share = 8;
-    while (share < (count + 7) / 8) share *= 8;
-    EXPECT_TRUE(is_cut(points, spatial_order(points), 0, count, share)) << count;
+    EXPECT_TRUE(testing::is_spatial_order(points, spatial_order(points))) << count;
     const Points with_ties = (7 * points.array()).round();
-    EXPECT_TRUE(is_cut(with_ties, spatial_order(with_ties), 0, count, share)) << count;
+    EXPECT_TRUE(testing::is_spatial_order(with_ties, spatial_order(with_ties))) << count;
   }
 }
 
@@ -113,16 +93,16 @@ TEST(SpatialOrder, WhatIsNotFiniteComesLast) {
   EXPECT_THAT(Indices(order.begin() + 4, order.end()), ElementsAre(1, 4));
 }
 
-TEST(SpatialOrder, ThreadsAndVectorLevelsDoNotShow) {
+TEST(SpatialOrder, ThreadsAndTargetsDoNotShow) {
   const Points points = testing::clustered_points(5000, 2);
   const Indices expected = spatial_order(points);
   EXPECT_EQ(spatial_order(points, testing::last_first), expected);
   EXPECT_EQ(spatial_order(points, testing::on_three_threads), expected);
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     for (const auto& set : testing::hard_point_sets()) {
       const Indices order = spatial_order(set.points);
-      const testing::ForcedLevel baseline(VectorLevel::Baseline);
+      const testing::ForcedTarget baseline(testing::available_targets().back());
       EXPECT_EQ(spatial_order(set.points), order) << set.name;
     }
   }

@@ -3,15 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "kernel/random.h"
-#include "kernel/rigid_transform.h"
 #include "tests/support/execution.h"
 
 namespace corral {
 namespace {
 
-using testing::available_levels;
-using testing::ForcedLevel;
+using testing::available_targets;
+using testing::ForcedTarget;
 
 struct Fit {
   RigidTransform motion;
@@ -20,32 +21,13 @@ struct Fit {
 
 /// The fit of the triangles in lane 5; those in the other lanes are degenerate.
 Fit fit_in_lanes(const Points& source, const Points& target, double smallest_area) {
-  alignas(64) double corners[2][3][3][kLanes] = {};
-  double numbers[13][kLanes];
-  for (int corner = 0; corner < 3; ++corner)
-    for (int axis = 0; axis < 3; ++axis) {
-      corners[0][corner][axis][5] = source(corner, axis);
-      corners[1][corner][axis][5] = target(corner, axis);
-    }
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    LanePoint<Lanes> p[2][3];
-    for (int side = 0; side < 2; ++side)
-      for (int corner = 0; corner < 3; ++corner)
-        p[side][corner] = {Lanes::load(corners[side][corner][0]), Lanes::load(corners[side][corner][1]),
-                           Lanes::load(corners[side][corner][2])};
-    const auto motion = fit_triangle(p[0], p[1], smallest_area);
-    const LanePoint<Lanes> rows[4] = {motion.rows[0], motion.rows[1], motion.rows[2], motion.translation};
-    for (int i = 0; i < 4; ++i)
-      rows[i].x.store(numbers[3 * i]), rows[i].y.store(numbers[3 * i + 1]), rows[i].z.store(numbers[3 * i + 2]);
-    motion.usable.store(numbers[12]);
-  });
-  for (int lane = 0; lane < kLanes; ++lane) EXPECT_TRUE(lane == 5 || numbers[12][lane] == 0) << lane;
-  Fit fit;
-  for (int i = 0; i < 9; ++i) fit.motion.rotation(i / 3, i % 3) = numbers[i][5];
-  for (int i = 0; i < 3; ++i) fit.motion.translation(i) = numbers[9 + i][5];
-  fit.is_usable = numbers[12][5] == 1;
-  return fit;
+  LaneTriangles corners[2] = {};
+  LaneMotions motions;
+  corners[0].set(5, source, std::array{0, 1, 2});
+  corners[1].set(5, target, std::array{0, 1, 2});
+  fit_triangles(corners[0], corners[1], smallest_area, motions);
+  for (int lane = 0; lane < kLanes; ++lane) EXPECT_TRUE(lane == 5 || !motions.is_usable(lane)) << lane;
+  return {motions.get(5), motions.is_usable(5)};
 }
 
 Points random_points(RandomStream& random, double extent) {
@@ -55,8 +37,8 @@ Points random_points(RandomStream& random, double extent) {
 }
 
 TEST(TriangleFit, IsTheLeastSquaresMotion) {
-  for (const VectorLevel level : available_levels()) {
-    const ForcedLevel forced(level);
+  for (const std::int64_t each : available_targets()) {
+    const ForcedTarget forced(each);
     RandomStream random(1);
     for (int trial = 0; trial < 2000; ++trial) {
       const Points source = random_points(random, 10);
@@ -74,13 +56,13 @@ TEST(TriangleFit, IsTheLeastSquaresMotion) {
   }
 }
 
-TEST(TriangleFit, IsTheSameOnEveryLevel) {
+TEST(TriangleFit, IsTheSameOnEveryTarget) {
   RandomStream random(2);
   for (int trial = 0; trial < 200; ++trial) {
     const Points source = random_points(random, 10), target = random_points(random, 1);
     const Fit best = fit_in_lanes(source, target, 0);
-    for (const VectorLevel level : available_levels()) {
-      const ForcedLevel forced(level);
+    for (const std::int64_t each : available_targets()) {
+      const ForcedTarget forced(each);
       const Fit fit = fit_in_lanes(source, target, 0);
       EXPECT_EQ(fit.motion.rotation, best.motion.rotation);
       EXPECT_EQ(fit.motion.translation, best.motion.translation);

@@ -4,33 +4,32 @@
 // The ways in which a machine may run the loops: no result may tell them apart.
 
 #include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "kernel/parallel.h"
-#include "kernel/vectorized.h"
 
 namespace corral::testing {
 
-/// Forces a vector level as long as it lives.
-class ForcedLevel {
+/// The targets of Highway that are compiled and that this machine has, the best first.
+std::vector<std::int64_t> available_targets();
+
+std::string target_name(std::int64_t target);
+
+/// Has the loops run on one of them, in all threads, as long as it lives.
+class ForcedTarget {
  public:
-  explicit ForcedLevel(VectorLevel level) : before_(vector_level()) { force_vector_level(level); }
-  ~ForcedLevel() { force_vector_level(before_); }
-  ForcedLevel(const ForcedLevel&) = delete;
-  ForcedLevel& operator=(const ForcedLevel&) = delete;
+  explicit ForcedTarget(std::int64_t target);
+  ~ForcedTarget();
+  ForcedTarget(const ForcedTarget&) = delete;
+  ForcedTarget& operator=(const ForcedTarget&) = delete;
 
  private:
-  VectorLevel before_;
+  std::int64_t before_;
 };
-
-/// Those that this machine has, the lowest first.
-inline std::vector<VectorLevel> available_levels() {
-  std::vector<VectorLevel> levels;
-  for (const VectorLevel level : {VectorLevel::Baseline, VectorLevel::Avx2, VectorLevel::Avx512})
-    if (level <= vector_level()) levels.push_back(level);
-  return levels;
-}
 
 inline void last_first(int count, const std::function<void(int)>& body) {
   for (int i = count - 1; i >= 0; --i) body(i);

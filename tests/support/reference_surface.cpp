@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace corral::testing {
 namespace {
@@ -43,6 +44,23 @@ std::vector<Neighbor> reference_nearest(const Points& points, const Eigen::Vecto
                    [](const Neighbor& a, const Neighbor& b) { return a.squared_distance < b.squared_distance; });
   if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
   return all;
+}
+
+Indices reference_nearest_rows(const Points& points, const Points& queries, double limit) {
+  Indices nearest;
+  for (Eigen::Index i = 0; i < queries.rows(); ++i) {
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (Eigen::Index row = 0; row < points.rows(); ++row) {
+      const double x = queries(i, 0) - points(row, 0), y = queries(i, 1) - points(row, 1),
+                   z = queries(i, 2) - points(row, 2), squared = x * x + y * y + z * z;
+      if (!(squared <= limit * limit) || !(squared < least)) continue;
+      least = squared;
+      best = static_cast<int>(row);
+    }
+    nearest.push_back(best);
+  }
+  return nearest;
 }
 
 double reference_resolution(const Points& points) {

@@ -18,6 +18,9 @@ std::vector<Neighbor> reference_within(const Points& points, const Eigen::Vector
 /// The `count` nearest points, nearest first, the lower index first among equals.
 std::vector<Neighbor> reference_nearest(const Points& points, const Eigen::Vector3d& query, int count);
 
+/// The row nearest to each query within the limit (inclusive), the lowest of several; -1 if there is none.
+Indices reference_nearest_rows(const Points& points, const Points& queries, double limit);
+
 /// Mean over the distinct points of the distance to the nearest other one.
 double reference_resolution(const Points& points);
 

@@ -25,11 +25,11 @@ inline void expect_reference(const GroupingResult& found, const reference::Selec
   EXPECT_EQ(found.scores, expected.scores);
 }
 
-inline void expect_same_at_every_level(const GroupFunction& group, const CorrespondenceSet& matches) {
+inline void expect_same_on_every_target(const GroupFunction& group, const CorrespondenceSet& matches) {
   const GroupingResult expected = group(matches);
-  for (const VectorLevel level : available_levels()) {
-    const ForcedLevel forced(level);
-    SCOPED_TRACE("vector level " + std::to_string(static_cast<int>(level)));
+  for (const std::int64_t each : available_targets()) {
+    const ForcedTarget forced(each);
+    SCOPED_TRACE(target_name(each));
     expect_same_result(group(matches), expected);
   }
 }

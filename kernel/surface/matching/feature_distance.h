@@ -2,35 +2,15 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <limits>
-
-#include "kernel/vectorized.h"
 
 namespace corral {
 
-// What is nearest: the one place where distances of features are defined. Only sources include this, compiled without
-// contraction.
-
-/// The squared distance: rows in sixteen sums by row mod 16, the first eight and the last eight added, then lanes::sum.
-template <class Lanes>
-CORRAL_INLINE double squared_distance(const double* a, const double* b, Eigen::Index rows) {
-  Lanes even = Lanes::fill(0), odd = even;
-  const auto add = [&](const double* x, const double* y) {
-    const Lanes first = Lanes::load(x) - Lanes::load(y), second = Lanes::load(x + kLanes) - Lanes::load(y + kLanes);
-    even = even + first * first;
-    odd = odd + second * second;
-  };
-  Eigen::Index row = 0;
-  for (; row + 2 * kLanes <= rows; row += 2 * kLanes) add(a + row, b + row);
-  if (row < rows) {
-    double rest[2][2 * kLanes] = {};
-    std::copy(a + row, a + rows, rest[0]);
-    std::copy(b + row, b + rows, rest[1]);
-    add(rest[0], rest[1]);
-  }
-  return sum(even + odd);
-}
+// What is nearest: the one place where distances of features are defined. Only sources include this.
+//
+// A squared distance adds up the rows in sixteen sums by row mod 16; of these the first eight and the last eight are added,
+// then lane by lane, as everywhere (lanes-inl.h).
+// Plain form  tests/support/reference_matching.h
 
 /// The two nearest of the columns that were offered, in any order, each once.
 struct TwoNearest {
@@ -45,5 +25,36 @@ struct TwoNearest {
       second_squared = value;
   }
 };
+
+/// A bound that falls as nearer columns are found: scores below it belong to columns that are no nearer.
+struct ScoreBound {
+  Eigen::Index dimension = 0;
+  double scale = 1;            ///< of the projection
+  double own_squared = 0;      ///< length of the row of the source feature
+  double errors = 0;           ///< of both sides
+  double largest_squared = 0;  ///< length of the rows of all targets
+  int steps = 0;               ///< products in a score
+  float least(double squared) const;
+};
+
+/// Columns that are offered.
+struct OfferedColumns {
+  const double* first;  ///< of the matrix
+  Eigen::Index rows;    ///< of it
+  const int* chosen;    ///< which are offered, so many
+  int count;
+  int ahead;  ///< memory of that many more is asked for
+};
+
+/// Offers all of them.
+void offer(const double* feature, const OfferedColumns& columns, TwoNearest& nearest);
+
+/// Offers those whose scores reach the bound, in turn.
+void offer_scored(const double* feature, const OfferedColumns& columns, const float* scores, const ScoreBound& bound,
+                  TwoNearest& nearest);
+
+/// Offers all columns of `target` to each of `source` from `first` on.
+void offer_all(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target, Eigen::Index first,
+               std::vector<TwoNearest>& nearest);
 
 }  // namespace corral

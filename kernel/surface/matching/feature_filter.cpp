@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/matching/feature_filter.h"
 
+#include <hwy/cache_control.h>
+
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -90,19 +92,23 @@ void FeatureFilter::score(Index first, int count, FilterScratch& scratch) const 
 // A score is s = x'.y' - |y'|^2 / 2 = (|x'|^2 - |x' - y'|^2) / 2. Let D^2 = `squared` be a distance as computed in
 // double, off by less than 1 + gamma. If the target is as near, then |x' - y'| <= D + both errors, so s is at least what
 // that gives. As computed in float, s is off by (steps + 2) u times the magnitudes that are added, |x'| |y'| + |y'|^2 / 2.
-float FeatureFilter::least_score(double squared, double own_squared, double own_error, int steps) const {
-  const double gamma = static_cast<double>(target_.rows() + 32) * 0x1p-52;
-  const double reach = std::sqrt(squared) * projection_.scale() * (1 + gamma) + kTiny + own_error + error_;
-  const double magnitudes = std::sqrt(own_squared * largest_squared_) + largest_squared_ / 2;
+float ScoreBound::least(double squared) const {
+  const double gamma = static_cast<double>(dimension + 32) * 0x1p-52;
+  const double reach = std::sqrt(squared) * scale * (1 + gamma) + kTiny + errors;
+  const double magnitudes = std::sqrt(own_squared * largest_squared) + largest_squared / 2;
   const double slack = 1.01 * (steps + 6) * kUnit * magnitudes + kTiny;
   const double least = (own_squared - reach * reach * (1 + 1e-12)) / 2 - slack;
   return static_cast<float>(std::max<double>(kLeastScore, least - 2 * kUnit * std::abs(least)));
 }
 
+ScoreBound FeatureFilter::bound(double own_squared, double own_error, int steps) const {
+  return {target_.rows(), projection_.scale(), own_squared, own_error + error_, largest_squared_, steps};
+}
+
 void FeatureFilter::fetch(const int* columns, int count) const {
   const Index rows = target_.rows();
   for (int i = 0; i < count; ++i)
-    for (Index row = 0; row < rows; row += kLanes) __builtin_prefetch(target_.data() + columns[i] * rows + row);
+    for (Index row = 0; row < rows; row += kLanes) hwy::Prefetch(target_.data() + columns[i] * rows + row);
 }
 
 /// The best few by their fine scores of the best of each sixteenth by their coarse ones.
@@ -146,16 +152,11 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
     std::fill_n(query.fine.begin(), query.count, 0.F);
     return;
   }
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Index rows = target_.rows();
-    const double* feature = source_.data() + (first + row) * rows;
-    for (const int seed : query.seeds)
-      query.nearest.offer(seed, squared_distance<Lanes>(feature, target_.data() + seed * rows, rows));
-  });
+  offer(source_.col(first + row).data(), {target_.data(), target_.rows(), query.seeds.data(), kSeeds, 0},
+        query.nearest);
   const double squared = query.nearest.second_squared;
-  const float coarse = least_score(squared, own.coarse_squared[row], own.error[row], kCoarseNumbers);
-  const float fine = least_score(squared, own.fine_squared[row], own.error[row], kFineNumbers);
+  const float coarse = bound(own.coarse_squared[row], own.error[row], kCoarseNumbers).least(squared);
+  const float fine = bound(own.fine_squared[row], own.error[row], kFineNumbers).least(squared);
   const float* scores = scratch.scores.data() + offset(row, panels_, kPanelColumns);
   const int groups = reaching(scratch.tops.data() + offset(row, panels_, kFloatLanes), panels_ * kFloatLanes, coarse,
                               scratch.groups.data());
@@ -179,22 +180,9 @@ void FeatureFilter::choose_candidates(Index first, FilterScratch& scratch, Query
 
 TwoNearest FeatureFilter::measure_candidates(Index first, const FilterScratch& scratch, const Query& query) const {
   TwoNearest nearest = query.nearest;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Index rows = target_.rows();
-    const double* feature = source_.data() + (first + query.row) * rows;
-    float least = kLeastScore;
-    for (int i = 0; i < query.count; ++i) {
-      if (i + kFetched < query.count) fetch(&query.chosen[i + kFetched], 1);
-      if (query.fine[i] < least) continue;
-      const int column = query.chosen[i];
-      const double before = nearest.second_squared;
-      nearest.offer(column, squared_distance<Lanes>(feature, target_.data() + column * rows, rows));
-      if (nearest.second_squared < before)
-        least = least_score(nearest.second_squared, scratch.rows.fine_squared[query.row], scratch.rows.error[query.row],
-                            kFineNumbers);
-    }
-  });
+  offer_scored(source_.col(first + query.row).data(),
+               {target_.data(), target_.rows(), query.chosen.data(), query.count, kFetched}, query.fine.data(),
+               bound(scratch.rows.fine_squared[query.row], scratch.rows.error[query.row], kFineNumbers), nearest);
   return nearest;
 }
 

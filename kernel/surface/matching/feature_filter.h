@@ -66,7 +66,7 @@ class FeatureFilter {
   void choose_seeds(int row, FilterScratch& scratch, Query& query) const;
   void choose_candidates(Eigen::Index first, FilterScratch& scratch, Query& query) const;
   TwoNearest measure_candidates(Eigen::Index first, const FilterScratch& scratch, const Query& query) const;
-  float least_score(double squared, double own_squared, double own_error, int steps) const;
+  ScoreBound bound(double own_squared, double own_error, int steps) const;
   void fetch(const int* columns, int count) const;
 
   const Eigen::MatrixXd &source_, &target_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernel/surface/matching/feature_scores.h"
+#include "kernel/surface/matching/projection_loops.h"
 
 namespace corral {
 namespace {
@@ -37,55 +38,6 @@ Eigen::MatrixXd sample_of(const Eigen::MatrixXd& source, const Eigen::MatrixXd& 
     if (i < targets) sample.col(column++) = target.col(i * target.cols() / targets);
   }
   return sample;
-}
-
-template <class Lanes>
-CORRAL_INLINE double product(const double* a, const double* b, int count) {
-  Lanes even = Lanes::load(a) * Lanes::load(b), odd = Lanes::fill(0);
-  int i = kLanes;
-  for (; i + kLanes < count; i += 2 * kLanes) {
-    odd = odd + Lanes::load(a + i) * Lanes::load(b + i);
-    even = even + Lanes::load(a + i + kLanes) * Lanes::load(b + i + kLanes);
-  }
-  if (i < count) odd = odd + Lanes::load(a + i) * Lanes::load(b + i);
-  return sum(even + odd);
-}
-
-/// Gram-Schmidt, one column of `length` after the other; a column that depends on those before it becomes zero.
-void orthonormalise(AlignedColumn& columns, int length) {
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (int k = 0; k < kFineDirections; ++k) {
-      double* column = columns.data() + k * length;
-      const double before = product<Lanes>(column, column, length);
-      for (int other = 0; other < k; ++other) {
-        const double* base = columns.data() + other * length;
-        const Lanes factor = Lanes::fill(product<Lanes>(column, base, length));
-        for (int i = 0; i < length; i += kLanes)
-          (Lanes::load(column + i) - factor * Lanes::load(base + i)).store(column + i);
-      }
-      const double after = product<Lanes>(column, column, length);
-      const Lanes factor = Lanes::fill(after > 1e-12 * before && after > 1e-200 ? 1 / std::sqrt(after) : 0);
-      for (int i = 0; i < length; i += kLanes) (factor * Lanes::load(column + i)).store(column + i);
-    }
-  });
-}
-
-/// Frobenius norm of Q^T Q - I over the columns that are not zero.
-double orthonormality_defect(const AlignedColumn& columns, int length) {
-  double squares = 0;
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (int k = 0; k < kFineDirections; ++k)
-      for (int other = 0; other <= k; ++other) {
-        const double value = product<Lanes>(columns.data() + k * length, columns.data() + other * length, length);
-        if (other < k)
-          squares += 2 * value * value;
-        else if (value > 0)
-          squares += (value - 1) * (value - 1);
-      }
-  });
-  return std::sqrt(squares);
 }
 
 }  // namespace
@@ -136,7 +88,7 @@ void FeatureProjection::find_directions(const Eigen::MatrixXd& sample) {
     add_products(weights.data(), columns, {turned.data(), columns, rows}, sums.data());
     for (int k = 0; k < kFineDirections; ++k)
       for (int row = 0; row < length; ++row) directions[k * padded(length) + row] = sums[row * kPanelColumns + k];
-    orthonormalise(directions, padded(length));
+    orthonormalise({directions.data(), padded(length), kFineDirections});
     round_directions(directions);
   }
   measure_directions(directions);
@@ -158,7 +110,7 @@ void FeatureProjection::round_directions(AlignedColumn& directions) {
 // a chunk has products and there are chunks.
 void FeatureProjection::measure_directions(const AlignedColumn& directions) {
   const auto length = static_cast<int>(dimension_);
-  const double defect = orthonormality_defect(directions, padded(length)) + 1e-12;
+  const double defect = orthonormality_defect({directions.data(), padded(length), kFineDirections}) + 1e-12;
   const double terms = std::min(length, kChunk) + (length + kChunk - 1) / kChunk + 2;
   relative_error_ = 1.05 * (defect + kUnit + std::sqrt(kFineDirections) * terms * kUnit);
   usable_ = relative_error_ < 0.01;
@@ -166,29 +118,8 @@ void FeatureProjection::measure_directions(const AlignedColumn& directions) {
 
 void FeatureProjection::round_features(const Eigen::MatrixXd& features, Eigen::Index first, int count, float* numbers,
                                        double* squared) const {
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const auto length = static_cast<int>(dimension_);
-    const double *center = center_.data(), scale = scale_;
-    const Lanes factor = Lanes::fill(scale);
-    for (int i = 0; i < count; ++i) {
-      const double* from = features.data() + (first + i) * length;
-      float* to = numbers + i * length;
-      Lanes squares = factor - factor;
-      int row = 0;
-      for (; row + kLanes <= length; row += kLanes) {
-        const Lanes x = (Lanes::load(from + row) - Lanes::load(center + row)) * factor;
-        squares = squares + x * x;
-        x.store(to + row);
-      }
-      squared[i] = sum(squares);
-      for (; row < length; ++row) {
-        const double x = (from[row] - center[row]) * scale;
-        squared[i] += x * x;
-        to[row] = static_cast<float>(x);
-      }
-    }
-  });
+  const auto length = static_cast<int>(dimension_);
+  scale_and_round({features.data() + first * length, length, count}, center_.data(), scale_, numbers, squared);
 }
 
 void FeatureProjection::project(const Eigen::MatrixXd& features, Eigen::Index first, int count,

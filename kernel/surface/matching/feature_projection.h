@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "kernel/vectorized.h"
+#include "kernel/columns.h"
 
 namespace corral {
 

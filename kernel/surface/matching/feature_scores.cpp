@@ -2,34 +2,26 @@
 // Compiled with contraction: a multiplication and an addition may be one instruction.
 #include "kernel/surface/matching/feature_scores.h"
 
-#include "kernel/vectorized.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/matching/feature_scores.cpp"
+#include <hwy/foreach_target.h>
 
-namespace corral {
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
-/// What the registers of a level hold at once: kRows rows of kWidth times sixteen columns.
-template <class Floats>
-struct Tile {
-  static constexpr int kWidth = 1, kRows = 2;
-};
-template <>
-struct Tile<lanes::Floats8x2> {
-  static constexpr int kWidth = 1, kRows = 6;
-};
-template <>
-struct Tile<lanes::Floats16> {
-  static constexpr int kWidth = 4, kRows = 6;
-};
+/// What the registers of a target hold at once: kRows rows of kWidth times sixteen columns.
+constexpr int kRegister = static_cast<int>(HWY_LANES(float));
+constexpr int kWidth = kRegister >= 16 ? 4 : 1;
+constexpr int kRows = kRegister >= 8 || HWY_TARGET == HWY_NEON ? 6 : 2;
 
-template <class Floats>
 struct Sums {
-  Floats at[Tile<Floats>::kRows][Tile<Floats>::kWidth];
+  Floats at[kRows][kWidth];
 };
 
-template <class Floats>
-CORRAL_INLINE void multiply(const float* panel, int steps, const float* rows, std::ptrdiff_t stride,
-                            Sums<Floats>& out) {
-  constexpr int kWidth = Tile<Floats>::kWidth, kRows = Tile<Floats>::kRows;
+HWY_INLINE void multiply(const float* panel, int steps, const float* rows, std::ptrdiff_t stride, Sums& out) {
   Floats sums[kRows][kWidth];
   for (int row = 0; row < kRows; ++row)
     for (int i = 0; i < kWidth; ++i) sums[row][i] = Floats::fill(0);
@@ -46,101 +38,114 @@ CORRAL_INLINE void multiply(const float* panel, int steps, const float* rows, st
 }
 
 /// Calls use(row, first column, tile) for every tile of a panel.
-template <class Floats, class Use>
-CORRAL_INLINE void for_each_tile(const float* panel, int steps, const FloatRows& rows, const Use& use) {
-  for (int row = 0; row < rows.count; row += Tile<Floats>::kRows)
-    for (int column = 0; column < kPanelColumns; column += Tile<Floats>::kWidth * kFloatLanes) {
-      Sums<Floats> sums;
+template <class Use>
+HWY_INLINE void for_each_tile(const float* panel, int steps, const FloatRows& rows, const Use& use) {
+  for (int row = 0; row < rows.count; row += kRows)
+    for (int column = 0; column < kPanelColumns; column += kWidth * kFloatLanes) {
+      Sums sums;
       multiply(panel + column, steps, rows.first + row * rows.stride, rows.stride, sums);
       use(row, column, sums);
     }
 }
 
-}  // namespace
+HWY_FLATTEN void add_products(const float* panel, int steps, const FloatRows& rows, float* sums) {
+  for_each_tile(panel, steps, rows, [&](int row, int column, const Sums& tile) HWY_ATTR {
+    for (int r = 0; r < kRows; ++r)
+      for (int i = 0; i < kWidth; ++i) {
+        float* to = sums + (row + r) * kPanelColumns + column + i * kFloatLanes;
+        (Floats::load(to) + tile.at[r][i]).store(to);
+      }
+  });
+}
 
-void add_products(const float* panel, int steps, const FloatRows& rows, float* sums) {
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    for_each_tile<Floats>(panel, steps, rows, [&](int row, int column, const Sums<Floats>& tile) {
-      for (int r = 0; r < Tile<Floats>::kRows; ++r)
-        for (int i = 0; i < Tile<Floats>::kWidth; ++i) {
-          float* to = sums + (row + r) * kPanelColumns + column + i * kFloatLanes;
-          (Floats::load(to) + tile.at[r][i]).store(to);
+HWY_FLATTEN void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores,
+                               float* tops) {
+  for (int panel = 0; panel < panels; ++panel) {
+    const float* columns = first_panel + static_cast<std::ptrdiff_t>(panel) * steps * kPanelColumns;
+    for_each_tile(columns, steps, rows, [&](int row, int column, const Sums& tile) HWY_ATTR {
+      for (int r = 0; r < kRows; ++r) {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row + r) * panels + panel;
+        Floats top = tile.at[r][0];
+        for (int i = 0; i < kWidth; ++i) {
+          tile.at[r][i].store(scores + at * kPanelColumns + column + i * kFloatLanes);
+          top = larger(top, tile.at[r][i]);
         }
+        if (column > 0) top = larger(top, Floats::load(tops + at * kFloatLanes));
+        top.store(tops + at * kFloatLanes);
+      }
     });
-  });
+  }
 }
 
-void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores, float* tops) {
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    for (int panel = 0; panel < panels; ++panel) {
-      const float* columns = first_panel + static_cast<std::ptrdiff_t>(panel) * steps * kPanelColumns;
-      for_each_tile<Floats>(columns, steps, rows, [&](int row, int column, const Sums<Floats>& tile) {
-        for (int r = 0; r < Tile<Floats>::kRows; ++r) {
-          const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row + r) * panels + panel;
-          Floats top = tile.at[r][0];
-          for (int i = 0; i < Tile<Floats>::kWidth; ++i) {
-            tile.at[r][i].store(scores + at * kPanelColumns + column + i * kFloatLanes);
-            top = larger(top, tile.at[r][i]);
-          }
-          if (column > 0) top = larger(top, Floats::load(tops + at * kFloatLanes));
-          top.store(tops + at * kFloatLanes);
-        }
-      });
-    }
-  });
+HWY_FLATTEN void best_of_lanes(const float* scores, int count, float* best, int* columns) {
+  const Floats step = Floats::fill(kFloatLanes);
+  Floats most = Floats::load(scores), at = Floats::fill(0), place = at;
+  for (int i = kFloatLanes; i < count; i += kFloatLanes) {
+    const Floats value = Floats::load(scores + i);
+    place = place + step;
+    at = select(most < value, place, at);
+    most = larger(most, value);
+  }
+  most.store(best);
+  at.store(columns);
+  for (int lane = 0; lane < kFloatLanes; ++lane) columns[lane] += lane;
 }
 
-void best_of_lanes(const float* scores, int count, float* best, int* columns) {
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats step = Floats::fill(kFloatLanes);
-    Floats most = Floats::load(scores), at = Floats::fill(0), place = at;
-    for (int i = kFloatLanes; i < count; i += kFloatLanes) {
-      const Floats value = Floats::load(scores + i);
-      place = place + step;
-      at = select(most < value, place, at);
-      most = larger(most, value);
-    }
-    most.store(best);
-    at.store(columns);
-    for (int lane = 0; lane < kFloatLanes; ++lane) columns[lane] += lane;
-  });
-}
-
-int reaching(const float* scores, int count, float least, float* found) {
+HWY_FLATTEN int reaching(const float* scores, int count, float least, float* found) {
   float* end = found;
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    static constexpr float kLane[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const Floats bound = Floats::fill(least), step = Floats::fill(kFloatLanes);
-    Floats place = Floats::load(kLane);
-    for (int i = 0; i < count; i += kFloatLanes, place = place + step) {
-      const unsigned reached = bits(bound <= Floats::load(scores + i));
-      place.pack(reached, end);
-      end += __builtin_popcount(reached);
-    }
-  });
+  static constexpr float kLane[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+  const Floats bound = Floats::fill(least), step = Floats::fill(kFloatLanes);
+  Floats place = Floats::load(kLane);
+  for (int i = 0; i < count; i += kFloatLanes, place = place + step) {
+    const unsigned reached = bits(bound <= Floats::load(scores + i));
+    place.pack(reached, end);
+    end += hwy::PopCount(reached);
+  }
   return static_cast<int>(end - found);
 }
 
+HWY_FLATTEN void score_chosen(const float* row, const float* others, const int* chosen, int count, float* scores) {
+  const Floats a = Floats::load(row), b = Floats::load(row + kFloatLanes), c = Floats::load(row + 2 * kFloatLanes),
+               d = Floats::load(row + 3 * kFloatLanes);
+  for (int i = 0; i < count; ++i) {
+    const float* other = others + static_cast<std::ptrdiff_t>(chosen[i]) * kPanelColumns;
+    scores[i] = sum((a * Floats::load(other) + b * Floats::load(other + kFloatLanes)) +
+                    (c * Floats::load(other + 2 * kFloatLanes) + d * Floats::load(other + 3 * kFloatLanes)));
+  }
+}
+
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(add_products);
+HWY_EXPORT(score_columns);
+HWY_EXPORT(best_of_lanes);
+HWY_EXPORT(reaching);
+HWY_EXPORT(score_chosen);
+
+void add_products(const float* panel, int steps, const FloatRows& rows, float* sums) {
+  HWY_DYNAMIC_DISPATCH(add_products)(panel, steps, rows, sums);
+}
+
+void score_columns(const float* first_panel, int panels, int steps, const FloatRows& rows, float* scores, float* tops) {
+  HWY_DYNAMIC_DISPATCH(score_columns)(first_panel, panels, steps, rows, scores, tops);
+}
+
+void best_of_lanes(const float* scores, int count, float* best, int* columns) {
+  HWY_DYNAMIC_DISPATCH(best_of_lanes)(scores, count, best, columns);
+}
+
+int reaching(const float* scores, int count, float least, float* found) {
+  return HWY_DYNAMIC_DISPATCH(reaching)(scores, count, least, found);
+}
+
 void score_chosen(const float* row, const float* others, const int* chosen, int count, float* scores) {
-  vectorized([&](auto kind) {
-    using Floats = typename decltype(kind)::Floats;
-    const Floats a = Floats::load(row), b = Floats::load(row + kFloatLanes), c = Floats::load(row + 2 * kFloatLanes),
-                 d = Floats::load(row + 3 * kFloatLanes);
-    for (int i = 0; i < count; ++i) {
-      const float* other = others + static_cast<std::ptrdiff_t>(chosen[i]) * kPanelColumns;
-      float four[4];
-      ((a * Floats::load(other) + b * Floats::load(other + kFloatLanes)) +
-       (c * Floats::load(other + 2 * kFloatLanes) + d * Floats::load(other + 3 * kFloatLanes)))
-          .folded()
-          .folded()
-          .store(four);
-      scores[i] = (four[0] + four[1]) + (four[2] + four[3]);
-    }
-  });
+  HWY_DYNAMIC_DISPATCH(score_chosen)(row, others, chosen, count, scores);
 }
 
 }  // namespace corral
+#endif

@@ -5,7 +5,7 @@
 
 namespace corral {
 
-// Products of short rows of floats: the arithmetic of a filter, rounded differently on every vector level. Whoever uses
+// Products of short rows of floats: the arithmetic of a filter, rounded differently on every target. Whoever uses
 // them allows for (s + 4) 2^-24 of the sum of magnitudes, s steps. Only sources include this.
 
 constexpr int kPanelColumns = 64;  ///< columns that are multiplied together, stored step by step

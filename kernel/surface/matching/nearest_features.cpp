@@ -23,20 +23,10 @@ void store(NearestFeatures& result, Index query, const TwoNearest& nearest, bool
   result.second_squared_distance(query) = has_second ? nearest.second_squared : 0;
 }
 
-/// Measures everything, block by block of targets.
+/// Measures everything.
 void search_all(const MatrixXd& source, const MatrixXd& target, Index first, Index end, NearestFeatures& result) {
-  constexpr Index kBlock = 64;
   std::vector<TwoNearest> nearest(static_cast<std::size_t>(end - first));
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const Index rows = source.rows();
-    for (Index begin = 0; begin < target.cols(); begin += kBlock)
-      for (Index query = first; query < end; ++query)
-        for (Index column = begin; column < std::min(target.cols(), begin + kBlock); ++column)
-          nearest[static_cast<std::size_t>(query - first)].offer(
-              static_cast<int>(column),
-              squared_distance<Lanes>(source.data() + query * rows, target.data() + column * rows, rows));
-  });
+  offer_all(source, target, first, nearest);
   for (Index query = first; query < end; ++query)
     store(result, query, nearest[static_cast<std::size_t>(query - first)], target.cols() > 1);
 }

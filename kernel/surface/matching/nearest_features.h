@@ -24,7 +24,7 @@ struct NearestFeatures {
 ///   d(i, j) = (a_i - b_j)^2 summed in double in one order      nearest_i = argmin_j d(i, j), ties to the lower column
 ///
 /// The second distance is the second smallest of the values: that of another column, and equal to the first on a tie.
-/// Nothing is returned if either side is empty. Every vector level and number of threads gives the same bits.
+/// Nothing is returned if either side is empty. Every machine and number of threads gives the same bits.
 ///
 /// Method    Lower bounds first, then the few distances that they leave open: features are projected on the principal
 ///           directions of a sample, and keep the length of what is left (partial distances with the norm of the rest).
@@ -34,6 +34,7 @@ struct NearestFeatures {
 /// Cost      O(D (N + M)) for the projection, 24 N M multiplications of floats; O(N M D) where all features are alike
 ///           or overflow. 90 floats per target, and 80 M floats per thread.
 /// Throws    InvalidInput for numbers that are not finite.
+/// Plain form  tests/support/reference_matching.h
 NearestFeatures find_two_nearest(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                                  const ParallelFor& parallel = one_by_one);
 

@@ -3,21 +3,21 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
 #include <utility>
 
-#include "kernel/surface/search/point_grid.h"
+#include "kernel/surface/search/cell_numbers.h"
 
 namespace corral {
 namespace {
 
-constexpr std::int64_t kMargin = PointGrid::kLargestReach;  // empty cells around, so that no row runs into the next
-constexpr int kSliceBits = 5, kMostSliceBits = 6;           // a cell has at least 32 slices along x
-constexpr int kDigitBits = 11;                              // of the sort of the keys
-constexpr double kMostCells = 5e17;                         // keys with their slices are 63 bits
+constexpr int kSliceBits = 5, kMostSliceBits = 6;  // a cell has at least 32 slices along x
+constexpr int kDigitBits = 11;                     // of the sort of the keys
+constexpr double kMostCells = 5e17;                // keys with their slices are 63 bits
 
 /// The cell of every point as one number, ascending by z, then y, then x.
 struct CellKeys {
@@ -25,24 +25,13 @@ struct CellKeys {
   std::int64_t row_step = 1, layer_step = 1;
 };
 
-/// Cells along one axis.
-struct Axis {
-  const double* values;
-  double corner, side;
-  double last;  // the largest value
-  double place(double value) const { return (value - corner) / side; }
-  std::int64_t cell(double value) const {
-    return place(value) < 4e18 ? static_cast<std::int64_t>(place(value)) : 0;  // infinite extents have no cells
-  }
-};
-
-Axis axis_of(const Points& points, const BoundingBox& box, int axis, double side) {
+CellAxis axis_of(const Points& points, const BoundingBox& box, int axis, double side) {
   return {points.col(axis).data(), box.low(axis), side, box.high(axis)};
 }
 
 /// Far outliers make more cells than keys can count: empty stretches are cut to the reach of a search, which no search can
 /// tell.
-std::vector<std::int64_t> cells_without_gaps(const Axis& axis, std::size_t count) {
+std::vector<std::int64_t> cells_without_gaps(const CellAxis& axis, std::size_t count) {
   std::vector<std::int64_t> cells(count);
   for (std::size_t i = 0; i < count; ++i) cells[i] = axis.cell(axis.values[i]);
   std::vector<std::int64_t> taken = cells;
@@ -62,65 +51,35 @@ std::optional<CellKeys> combine(const std::array<std::int64_t, 3>& largest, std:
   std::array<std::int64_t, 3> steps;
   double product = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    steps[axis] = largest[axis] + 1 + 2 * kMargin;
+    steps[axis] = largest[axis] + 1 + 2 * kCellMargin;
     product *= static_cast<double>(steps[axis]);
   }
   if (!(product <= kMostCells)) return std::nullopt;
   CellKeys result{std::vector<std::int64_t>(count), steps[0], steps[0] * steps[1]};
   for (std::size_t i = 0; i < count; ++i)
-    result.keys[i] =
-        (cell(2, i) + kMargin) * result.layer_step + (cell(1, i) + kMargin) * result.row_step + cell(0, i) + kMargin;
+    result.keys[i] = (cell(2, i) + kCellMargin) * result.layer_step + (cell(1, i) + kCellMargin) * result.row_step +
+                     cell(0, i) + kCellMargin;
   return result;
 }
 
-/// results[i] = number(load) for every i, eight at a time, where load(column) is of lanes from i on; whole numbers.
-template <class Number>
-void compute_all(std::vector<std::int64_t>& results, const Number& number) {
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    for (std::size_t first = 0; first < results.size(); first += kLanes) {
-      const std::size_t count = std::min(results.size() - first, std::size_t{kLanes});
-      const auto load = [&](const double* column) {
-        if (count == kLanes) return Lanes::load(column + first);
-        double some[kLanes];
-        std::fill_n(std::copy_n(column + first, count, some), kLanes - count, column[first]);
-        return Lanes::load(some);
-      };
-      double numbers[kLanes];
-      number(load).store(numbers);
-      std::transform(numbers, numbers + count, &results[first],
-                     [](double each) { return static_cast<std::int64_t>(each); });
-    }
-  });
-}
-
 /// combine() of the cells along the axes as they are, where all keys are whole numbers that doubles can hold.
-std::optional<CellKeys> combine_on_lanes(const std::array<Axis, 3>& axes, std::size_t count) {
-  const auto cells = [&](std::size_t axis) { return std::floor(axes[axis].place(axes[axis].last)) + 1 + 2 * kMargin; };
+std::optional<CellKeys> combine_on_lanes(const std::array<CellAxis, 3>& axes, std::size_t count) {
+  const auto cells = [&](std::size_t axis) {
+    return std::floor(axes[axis].place(axes[axis].last)) + 1 + 2 * kCellMargin;
+  };
   const double row_step = cells(0), layer_step = row_step * cells(1);
   if (!(layer_step * cells(2) <= kMostWhole)) return std::nullopt;
   CellKeys result{std::vector<std::int64_t>(count), static_cast<std::int64_t>(row_step),
                   static_cast<std::int64_t>(layer_step)};
-  compute_all(result.keys, [&](const auto& load) {
-    using Lanes = decltype(load(axes[0].values));
-    const auto cell = [&](std::size_t axis) {
-      const Lanes offset = load(axes[axis].values) - Lanes::fill(axes[axis].corner);
-      return floor_of(offset / Lanes::fill(axes[axis].side)) + Lanes::fill(kMargin);
-    };
-    return cell(2) * Lanes::fill(layer_step) + cell(1) * Lanes::fill(row_step) + cell(0);
-  });
+  combine_cells(axes, row_step, layer_step, result.keys);
   return result;
 }
 
 /// In which of so many slices of its cell along an axis each point lies; all in the first if the extent is infinite.
-std::vector<std::int64_t> number_slices(const Axis& axis, double slices, std::size_t count) {
+std::vector<std::int64_t> slices_of(const CellAxis& axis, double slices, std::size_t count) {
   std::vector<std::int64_t> numbers(count, 0);
   if (!(axis.place(axis.last) <= kMostWhole)) return numbers;
-  compute_all(numbers, [&](const auto& load) {
-    using Lanes = decltype(load(axis.values));
-    const Lanes place = (load(axis.values) - Lanes::fill(axis.corner)) / Lanes::fill(axis.side);
-    return floor_of((place - floor_of(place)) * Lanes::fill(slices));
-  });
+  number_slices(axis, slices, numbers);
   return numbers;
 }
 
@@ -128,8 +87,8 @@ std::vector<std::int64_t> number_slices(const Axis& axis, double slices, std::si
 CellKeys number_cells(const Points& points, const BoundingBox& box, double& side) {
   const auto count = static_cast<std::size_t>(points.rows());
   for (;; side *= 2) {
-    const std::array<Axis, 3> axes{axis_of(points, box, 0, side), axis_of(points, box, 1, side),
-                                   axis_of(points, box, 2, side)};
+    const std::array<CellAxis, 3> axes{axis_of(points, box, 0, side), axis_of(points, box, 1, side),
+                                       axis_of(points, box, 2, side)};
     if (auto fast = combine_on_lanes(axes, count)) return *std::move(fast);
     const auto direct =
         combine({axes[0].cell(box.high(0)), axes[1].cell(box.high(1)), axes[2].cell(box.high(2))}, count,
@@ -165,7 +124,11 @@ void radix_sort(std::vector<std::uint64_t>& numbers, int left_out = 0) {
   }
 }
 
-int bits_of(std::uint64_t number) { return number == 0 ? 0 : 64 - __builtin_clzll(number); }
+int bits_of(std::uint64_t number) {
+  int bits = 0;
+  for (; number != 0; number >>= 1) ++bits;
+  return bits;
+}
 
 /// Sorts keys, and tells the rows that they were in; equal ones stay in order.
 Indices sort_keys(std::vector<std::int64_t>& keys) {
@@ -219,7 +182,7 @@ std::size_t count_cells(const Points& points, const BoundingBox& box, double& si
   for (const std::int64_t key : keys)
     taken[static_cast<std::size_t>((key - base) / kBits)] |= std::uint64_t{1} << ((key - base) % kBits);
   std::size_t count = 0;
-  for (const std::uint64_t bits : taken) count += static_cast<std::size_t>(__builtin_popcountll(bits));
+  for (const std::uint64_t bits : taken) count += std::bitset<64>(bits).count();
   return count;
 }
 
@@ -228,7 +191,7 @@ SortedCells sort_by_cell(const Points& points, const BoundingBox& box, double& s
   std::vector<std::int64_t>& keys = numbered.keys;
   const int slice_bits = slice_bits_for(keys);
   const auto slices = static_cast<double>(std::int64_t{1} << slice_bits);
-  const std::vector<std::int64_t> slice = number_slices(axis_of(points, box, 0, side), slices, keys.size());
+  const std::vector<std::int64_t> slice = slices_of(axis_of(points, box, 0, side), slices, keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = (keys[i] << slice_bits) + slice[i];
   Indices rows = sort_keys(keys);
   for (std::int64_t& key : keys) key >>= slice_bits;

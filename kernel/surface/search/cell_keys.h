@@ -7,20 +7,10 @@
 
 #include "kernel/bounding_box.h"
 #include "kernel/types.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 
 // The cells of a PointGrid as numbers. Only sources include this.
-
-constexpr double kMostWhole = 0x1p51;  ///< whole numbers that doubles hold, and some to spare
-
-/// Rounded down; for numbers from 0 to kMostWhole.
-template <class Lanes>
-CORRAL_INLINE Lanes floor_of(const Lanes& number) {
-  const Lanes shift = Lanes::fill(0x1p52), nearest = (number + shift) - shift;
-  return select(number < nearest, nearest - Lanes::fill(1), nearest);
-}
 
 /// How many cells of a side hold some of the points; the side grows where there are more cells than numbers.
 std::size_t count_cells(const Points& points, const BoundingBox& box, double& side);

@@ -4,10 +4,10 @@
 #include <map>
 #include <vector>
 
+#include "kernel/columns.h"
 #include "kernel/parallel.h"
 #include "kernel/point_pairs.h"
 #include "kernel/types.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 
@@ -18,8 +18,6 @@ class PointTree {
   /// Rows that are not finite are never found.
   explicit PointTree(const Points& points, const ParallelFor& parallel = one_by_one);
 
- private:
-  friend class NearestTracker;
   struct alignas(64) Node {  // of an entry that is not there, all places are infinite
     double low[3][kLanes], high[3][kLanes];
     int child[kLanes];  // a node, or the number of a leaf
@@ -32,15 +30,23 @@ class PointTree {
   static int leaf_number(std::size_t index) { return -2 - static_cast<int>(index); }
   static std::size_t leaf_index(int number) { return static_cast<std::size_t>(-2 - number); }
 
+  /// What a search reads. Only sources call these.
+  const Node* nodes() const { return nodes_.data(); }
+  const Leaf* leaves() const { return leaves_.data(); }
+  int root() const { return root_; }           ///< a node, the number of a leaf, or kNothing
+  double spacing() const { return spacing_; }  ///< about the distance of neighbours, where the points lie on a surface
+
+ private:
   struct Box;
   std::vector<Box> gather(const std::vector<Box>& boxes);
-  void fetch(int number) const;
 
   std::vector<Node, CacheLineAllocator<Node>> nodes_;
   std::vector<Leaf, CacheLineAllocator<Leaf>> leaves_;
   int root_ = kNothing;
-  double spacing_ = 0;  // about the distance of neighbours, where the points lie on a surface
+  double spacing_ = 0;
 };
+
+struct FollowedPoints;
 
 /// Follows the nearest points of queries that move little from one call to the next, as in iterative closest points.
 ///
@@ -52,6 +58,7 @@ class PointTree {
 ///
 /// Source    the bound is that of [greenspan2001nearest], with one distance in place of sorted lists of neighbours.
 /// Cost      one comparison where the bound holds; a search visits O(log V) nodes, and few for a query beyond the limit.
+/// Plain form  tests/support/reference_surface.h
 class NearestTracker {
  public:
   /// The tree must outlive this.
@@ -66,17 +73,11 @@ class NearestTracker {
   const Indices& nearest(const Points& queries, double limit);
 
  private:
-  struct Followed;
-  template <class Lanes>
-  struct Search;
-  Followed& follow(Eigen::Index count);
-
-  template <class Kind>
-  void search(Kind kind, Followed& followed, std::size_t first, std::size_t last, double limit) const;
+  FollowedPoints& follow(Eigen::Index count);
 
   const PointTree& tree_;
   ParallelFor parallel_;
-  std::map<Eigen::Index, Followed> followed_;  // by the number of queries: those of each level of a refinement
+  std::map<Eigen::Index, FollowedPoints> followed_;  // by the number of queries: those of each level of a refinement
 };
 
 }  // namespace corral

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kernel/surface/search/cell_keys.h"
+#include "kernel/surface/search/cell_numbers.h"
 
 namespace corral {
 namespace {
@@ -109,18 +110,9 @@ Eigen::Array3d PointGrid::within_cell(int slot) const {
 
 AlignedColumn PointGrid::from_faces() const {
   AlignedColumn shares(x_.size(), 0.0);
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    const auto inside = [&](const AlignedColumn& column, int axis, std::size_t slot) {
-      const Lanes place = (Lanes::load(&column[slot]) - Lanes::fill(corner_(axis))) / Lanes::fill(side_);
-      return place - floor_of(place);
-    };
-    for (std::size_t slot = 0; slot < static_cast<std::size_t>(size()); slot += kLanes) {
-      const Lanes x = inside(x_, 0, slot), y = inside(y_, 1, slot), z = inside(z_, 2, slot);
-      const Lanes lowest = smaller(smaller(x, y), z), highest = larger(larger(x, y), z);
-      smaller(lowest, Lanes::fill(1) - highest).store(&shares[slot]);
-    }
-  });
+  const CellAxis axes[] = {
+      {x_.data(), corner_.x(), side_}, {y_.data(), corner_.y(), side_}, {z_.data(), corner_.z(), side_}};
+  measure_from_faces(axes, size(), shares.data());
   return shares;
 }
 

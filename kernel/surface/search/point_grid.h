@@ -7,14 +7,15 @@
 #include <vector>
 
 #include "kernel/bounding_box.h"
+#include "kernel/columns.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/vectorized.h"
 
 namespace corral {
 
 /// Points sorted into cubic cells: the index of the loops that ask for the neighbourhood of every vertex, where a tree is
 /// several times slower. A *slot* is a place in the sorted order: by cell, then by x, y, z, then by row. Sums over
 /// neighbours run in this order, so that they do not depend on how the vertices are numbered.
+/// Plain form  tests/support/reference_surface.h
 class PointGrid {
  public:
   /// Finite points; the side of a cell, positive, in their units. O(V) memory however far apart the points are.
@@ -59,7 +60,7 @@ class PointGrid {
   Eigen::Array3d within_cell(int slot) const;  // 0 .. 1 along each axis
 
   double side_;
-  double rounding_ = 0;       // of the difference of two places among the cells, mesh units
+  double rounding_ = 0;  // of the difference of two places among the cells, mesh units
   Eigen::RowVector3d corner_;
   std::int64_t row_step_ = 1, layer_step_ = 1;  // difference of keys to the next y and the next z
   std::vector<int> rows_;
@@ -100,54 +101,5 @@ class CellNeighborhoods {
   std::vector<SlotRange> ranges_;
   std::vector<std::size_t> begins_;
 };
-
-/// Columns of the slots of some ranges, copied next to each other for loops that run over them often. The first column
-/// goes on with infinity, for at least sixteen numbers.
-template <int kColumns>
-class PackedSlots {
- public:
-  int size() const { return size_; }
-  const double* operator[](int column) const { return columns_[column].data(); }
-
-  template <class Lanes>
-  CORRAL_INLINE void collect(const AlignedColumn* const (&from)[kColumns], const SlotRange* first,
-                             const SlotRange* last) {
-    std::size_t count = 0;
-    for (const SlotRange* range = first; range != last; ++range)
-      count += static_cast<std::size_t>(range->end - range->begin);
-    size_ = static_cast<int>(count);
-    if (columns_[0].size() < count + kFloatLanes)
-      for (AlignedColumn& column : columns_) column.resize(2 * count + kFloatLanes);
-    const double* sources[kColumns];
-    double* targets[kColumns];
-    for (int i = 0; i < kColumns; ++i) sources[i] = from[i]->data(), targets[i] = columns_[i].data();
-    for (const SlotRange* range = first; range != last; ++range) {
-      const int length = range->end - range->begin;
-      for (int at = 0; at < length; at += kLanes)  // what is too many is written over
-        for (int i = 0; i < kColumns; ++i) Lanes::load(sources[i] + range->begin + at).store(targets[i] + at);
-      for (int i = 0; i < kColumns; ++i) targets[i] += length;
-    }
-    std::fill_n(targets[0], kFloatLanes, std::numeric_limits<double>::infinity());
-  }
-
- private:
-  AlignedColumn columns_[kColumns];
-  int size_ = 0;
-};
-
-/// Calls visit(inside, dx, dy, dz, i) for eight places after the other, the first three columns of packed slots: `inside` is
-/// true on the lanes that lie within a squared distance of (x, y, z), d their offsets from it, i the first of the eight. What
-/// is infinitely far, as the padding is, lies within no distance.
-template <class Lanes, int kColumns, class Visit>
-CORRAL_INLINE void visit_within(const PackedSlots<kColumns>& packed, double x, double y, double z, double squared,
-                                const Visit& visit) {
-  const Lanes cx = Lanes::fill(x), cy = Lanes::fill(y), cz = Lanes::fill(z),
-              limit = Lanes::fill(std::min(squared, std::numeric_limits<double>::max()));
-  const double *xs = packed[0], *ys = packed[1], *zs = packed[2];
-  for (int i = 0; i < packed.size(); i += kLanes) {
-    const Lanes dx = Lanes::load(xs + i) - cx, dy = Lanes::load(ys + i) - cy, dz = Lanes::load(zs + i) - cz;
-    visit(dx * dx + dy * dy + dz * dz <= limit, dx, dy, dz, i);
-  }
-}
 
 }  // namespace corral

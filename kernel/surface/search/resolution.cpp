@@ -1,96 +1,75 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/search/resolution.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 
-#include "kernel/error.h"
-#include "kernel/surface/search/nearest_sweep.h"
-#include "kernel/surface/search/neighborhood.h"
+#include "kernel/surface/search/mean_nearest.h"
 
-namespace corral {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/surface/search/resolution.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/surface/search/nearest_sweep-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Duplicates are next to each other in the order of the slots.
-bool is_duplicate(const PointGrid& grid, std::size_t slot) {
-  return slot > 0 && grid.x()[slot] == grid.x()[slot - 1] && grid.y()[slot] == grid.y()[slot - 1] &&
-         grid.z()[slot] == grid.z()[slot - 1];
-}
-
 /// Squared distance of a slot to the nearest point in another place around it; infinite if there is none.
-template <class Lanes>
-CORRAL_INLINE double nearest_other(const PointGrid& grid, const PackedSlots<3>& around, std::size_t slot) {
+HWY_INLINE double nearest_other(const PointGrid& grid, const PackedSlots<3>& around, std::size_t slot) {
   const Lanes none = Lanes::fill(kInfinity), zero = Lanes::fill(0);
   Lanes nearest = none;
-  visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
-                      [&](auto, Lanes dx, Lanes dy, Lanes dz, int) {
-                        const Lanes squared = dx * dx + dy * dy + dz * dz;
-                        nearest = smaller(nearest, select(zero < squared, squared, none));
-                      });
+  visit_within(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], kInfinity,
+               [&](auto, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
+                 const Lanes squared = dx * dx + dy * dy + dz * dz;
+                 nearest = smaller(nearest, select(zero < squared, squared, none));
+               });
   return smallest(nearest);
 }
 
-/// The same by CGAL's tree, for points that lie so that cells do not help.
-double nearest_by_tree(const PointIndex& index, const Eigen::Vector3d& point, int size) {
-  for (int count = 2;; count *= 2) {
-    for (const Neighbor& neighbor : index.nearest(point, count))
-      if (neighbor.squared_distance > 0) return neighbor.squared_distance;
-    if (count >= size) return kInfinity;
+/// Looks for the nearest of slots that follow each other.
+class Worker {
+ public:
+  Worker(const PointGrid& grid, AlignedColumn& squares) : grid_(grid), squares_(squares) {}
+
+  HWY_INLINE bool attempt(int slot, const SlotRange* first, const SlotRange* last, bool are_new, double sure_squared) {
+    if (are_new) around_.collect({&grid_.x(), &grid_.y(), &grid_.z()}, first, last);
+    const auto i = static_cast<std::size_t>(slot);
+    squares_[i] = nearest_other(grid_, around_, i);
+    return squares_[i] <= sure_squared;
   }
+
+ private:
+  const PointGrid& grid_;
+  AlignedColumn& squares_;
+  PackedSlots<3> around_;
+};
+
+/// By slot; infinite where it is not known.
+AlignedColumn nearest_squares(const PointGrid& grid, const ParallelFor& parallel) {
+  AlignedColumn squares(grid.x().size(), 0.0);
+  const auto left = NearestSweep(grid).run(parallel, [&] { return Worker(grid, squares); });
+  for (const int slot : left) squares[static_cast<std::size_t>(slot)] = kInfinity;
+  return squares;
 }
 
 }  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(nearest_squares);
 
 double point_resolution(const Points& vertices, const ParallelFor& parallel) {
   constexpr double kOccupancy = 5;  // the nearest vertex is then nearly always in the next cells around
   const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
-  AlignedColumn squares(grid.x().size(), 0.0);
-  const auto left = NearestSweep(grid).run(parallel, [&](int slot, const SlotRange* first, const SlotRange* last,
-                                                         bool are_new, double sure_squared, auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    thread_local PackedSlots<3> around;
-    if (are_new) around.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
-    const auto i = static_cast<std::size_t>(slot);
-    squares[i] = nearest_other<Lanes>(grid, around, i);
-    return squares[i] <= sure_squared;
-  });
-  for (const int slot : left) squares[static_cast<std::size_t>(slot)] = kInfinity;
-  return mean_nearest(grid, vertices, std::move(squares));
-}
-
-double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares) {
-  std::optional<PointIndex> index;
-  double largest = 0;
-  int distinct = 0;
-  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot) {
-    if (is_duplicate(grid, slot)) {  // thousands of them would take minutes
-      squares[slot] = 0;
-      continue;
-    }
-    if (!(squares[slot] < kInfinity)) {
-      if (!index) index.emplace(points);
-      squares[slot] = nearest_by_tree(*index, points.row(grid.row(static_cast<int>(slot))).transpose(), grid.size());
-    }
-    largest = std::max(largest, squares[slot]);
-    ++distinct;
-  }
-  if (distinct < 2)
-    throw InvalidInput("point_resolution", "number of distinct vertices", std::to_string(distinct),
-                       "at least 2 (resolution would be zero)");
-  if (!(largest < kInfinity)) return kInfinity;
-  // In whole numbers of a unit below the last place of the longest, which add up to the same in whatever order.
-  __extension__ typedef __int128 Wide;
-  const double units = std::ldexp(1, 61 - std::ilogb(std::sqrt(largest)));  // in 1
-  Wide total = 0;
-  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
-    total += static_cast<std::int64_t>(std::sqrt(squares[slot]) * units);
-  return static_cast<double>(total) / units / distinct;
+  return mean_nearest(grid, vertices, HWY_DYNAMIC_DISPATCH(nearest_squares)(grid, parallel));
 }
 
 }  // namespace corral
+#endif

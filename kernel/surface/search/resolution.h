@@ -12,6 +12,7 @@ namespace corral {
 /// Source    [yang2017evaluation], and the authors' program (k = 2 nearest neighbours, averaged).
 /// Cost      O(V) time where vertices lie evenly on a surface. Any number of threads gives the same bits.
 /// Throws    InvalidInput for fewer than two distinct vertices.
+/// Plain form  tests/support/reference_surface.h
 double point_resolution(const Points& vertices, const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

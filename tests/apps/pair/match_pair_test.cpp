@@ -103,8 +103,8 @@ TEST(MatchPair, ThreadsAndRegistersDoNotMatter) {
   for (const int threads : {0, 2, 5}) {
     settings.threads = threads;
     expect_same();
-    for (const VectorLevel level : testing::available_levels()) {
-      const testing::ForcedLevel forced(level);
+    for (const std::int64_t each : testing::available_targets()) {
+      const testing::ForcedTarget forced(each);
       expect_same();
     }
   }

@@ -14,7 +14,7 @@
 namespace corral {
 namespace {
 
-using testing::ForcedLevel;
+using testing::ForcedTarget;
 using testing::run_stages;
 using testing::SurfaceStages;
 
@@ -30,13 +30,13 @@ std::vector<Mesh> some_meshes() {
   return {noisy, cloud, doubled, parts, testing::bumpy_sphere(4, 3)};
 }
 
-TEST(SameBits, AtEveryVectorLevel) {
+TEST(SameBits, OnEveryTarget) {
   for (const Mesh& mesh : some_meshes())
     for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
       const SurfaceStages expected = run_stages(mesh, one_by_one, form);
       EXPECT_GT(expected.descriptors.vertices.size(), 20u);
-      for (const VectorLevel level : testing::available_levels()) {
-        const ForcedLevel forced(level);
+      for (const std::int64_t each : testing::available_targets()) {
+        const ForcedTarget forced(each);
         expect_identical(run_stages(mesh, one_by_one, form), expected);
       }
     }
@@ -61,8 +61,8 @@ TEST(SameBits, WhereTheCellsGiveUp) {
   for (const Mesh& mesh : {crowded(4500, 600), crowded(6000, 900)}) {
     const Points normals = estimate_normals(mesh);
     const double resolution = point_resolution(mesh.vertices);
-    for (const VectorLevel level : testing::available_levels()) {
-      const ForcedLevel forced(level);
+    for (const std::int64_t each : testing::available_targets()) {
+      const ForcedTarget forced(each);
       EXPECT_TRUE(estimate_normals(mesh) == normals);
       EXPECT_EQ(point_resolution(mesh.vertices), resolution);
     }
@@ -75,7 +75,7 @@ TEST(SameBits, WhereTheCellsGiveUp) {
   }
 }
 
-TEST(SameBits, MatchesOnAnyThreadsAndAtEveryLevel) {
+TEST(SameBits, MatchesOnAnyThreadsAndOnEveryTarget) {
   const Mesh mesh = testing::bumpy_sphere(4, 4);
   const Eigen::MatrixXd source = run_stages(mesh).descriptors.features;
   const Eigen::MatrixXd target = run_stages(add_gaussian_noise(mesh, 0.002, 5)).descriptors.features;
@@ -90,8 +90,8 @@ TEST(SameBits, MatchesOnAnyThreadsAndAtEveryLevel) {
     };
     expect_same(match_features(source, target, options, testing::last_first));
     expect_same(match_features(source, target, options, testing::on_three_threads));
-    for (const VectorLevel level : testing::available_levels()) {
-      const ForcedLevel forced(level);
+    for (const std::int64_t each : testing::available_targets()) {
+      const ForcedTarget forced(each);
       expect_same(match_features(source, target, options));
     }
   }

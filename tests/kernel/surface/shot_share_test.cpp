@@ -94,8 +94,8 @@ TEST(ShotShares, ASectorHoldsItsUpperBorder) {
   };
   const Border borders[] = {{-1, -1, 0}, {0, -1, 1}, {1, -1, 2}, {1, 0, 3},
                             {1, 1, 4},   {0, 1, 5},  {-1, 1, 6}, {-1, 0, 7}};
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     for (const Border& border : borders)
       for (const double scale : {1.0, 0.1, 0.3, 1e-3, 1.2, 1e-200})
         for (const double zero : {0.0, -0.0}) {

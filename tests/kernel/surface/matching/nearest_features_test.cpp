@@ -12,7 +12,8 @@
 
 #include "kernel/random.h"
 #include "kernel/surface/matching/feature_filter.h"
-#include "kernel/vectorized.h"
+#include "tests/support/execution.h"
+#include "tests/support/reference_matching.h"
 
 namespace corral {
 namespace {
@@ -22,39 +23,6 @@ using Eigen::MatrixXd;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-/// The definition, written down once more without vectors.
-double reference_distance(const MatrixXd& source, Index i, const MatrixXd& target, Index j) {
-  double sums[16] = {};
-  for (Index row = 0; row < source.rows(); ++row) {
-    const double difference = source(row, i) - target(row, j);
-    sums[row % 16] += difference * difference;
-  }
-  for (int width = 8; width > 0; width /= 2)
-    for (int lane = 0; lane < width; ++lane) sums[lane] += sums[lane + width];
-  return sums[0];
-}
-
-NearestFeatures reference_nearest(const MatrixXd& source, const MatrixXd& target) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  NearestFeatures result;
-  result.squared_distance.setConstant(source.cols(), kInfinity);
-  result.second_squared_distance.setConstant(source.cols(), kInfinity);
-  for (Index i = 0; i < source.cols(); ++i) {
-    int nearest = 0;
-    double &first = result.squared_distance(i), &second = result.second_squared_distance(i);
-    for (Index j = 0; j < target.cols(); ++j) {
-      const double value = reference_distance(source, i, target, j);
-      if (value < first)
-        second = first, first = value, nearest = static_cast<int>(j);
-      else if (value < second)
-        second = value;
-    }
-    if (target.cols() == 1) second = 0;
-    result.nearest.push_back(nearest);
-  }
-  return result;
-}
 
 void expect_equal(const NearestFeatures& found, const NearestFeatures& expected) {
   EXPECT_EQ(found.nearest, expected.nearest);
@@ -77,15 +45,13 @@ void in_threads(int count, const std::function<void(int)>& body) {
   for (std::thread& thread : threads) thread.join();
 }
 
-/// On every vector level, and in blocks of any order.
+/// On every target, and in blocks of any order.
 void expect_exact(const MatrixXd& source, const MatrixXd& target) {
-  const NearestFeatures expected = reference_nearest(source, target);
-  const VectorLevel best = vector_level();
-  for (const VectorLevel level : {VectorLevel::Baseline, VectorLevel::Avx2, VectorLevel::Avx512}) {
-    force_vector_level(level);
+  const NearestFeatures expected = testing::reference_nearest_features(source, target);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     expect_equal(find_two_nearest(source, target), expected);
   }
-  force_vector_level(best);
   expect_equal(find_two_nearest(source, target, backwards), expected);
   expect_equal(find_two_nearest(source, target, in_threads), expected);
 }

@@ -13,6 +13,7 @@
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
+#include "tests/support/reference_surface.h"
 
 namespace corral {
 namespace {
@@ -22,23 +23,6 @@ using ::testing::ElementsAre;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-Indices by_brute_force(const Points& points, const Points& queries, double limit) {
-  Indices nearest;
-  for (Eigen::Index i = 0; i < queries.rows(); ++i) {
-    int best = -1;
-    double least = kInfinity;
-    for (Eigen::Index row = 0; row < points.rows(); ++row) {
-      const double x = queries(i, 0) - points(row, 0), y = queries(i, 1) - points(row, 1),
-                   z = queries(i, 2) - points(row, 2), squared = x * x + y * y + z * z;
-      if (!(squared <= limit * limit) || !(squared < least)) continue;
-      least = squared;
-      best = static_cast<int>(row);
-    }
-    nearest.push_back(best);
-  }
-  return nearest;
-}
 
 /// The points themselves, places between them, places off them by a unit, and some far away.
 Points places_around(const Points& points, double unit, std::uint64_t seed) {
@@ -61,7 +45,9 @@ TEST(NearestPoints, AgreeWithBruteForceOnHardSets) {
     if (set.points.rows() == 0) continue;
     const Points queries = places_around(set.points, set.unit, 1);
     for (const double limit : {0.0, 0.4 * set.unit, 1.0 * set.unit, 30 * set.unit, kInfinity})
-      EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), by_brute_force(set.points, queries, limit)) << limit;
+      EXPECT_EQ(NearestTracker(tree).nearest(queries, limit),
+                testing::reference_nearest_rows(set.points, queries, limit))
+          << limit;
   }
 }
 
@@ -69,7 +55,8 @@ TEST(NearestPoints, AgreeWithBruteForceOnManyPoints) {
   const Points points = testing::uniform_points(5000, 2), queries = testing::uniform_points(3000, 3);
   const PointTree tree(points);
   for (const double limit : {0.02, 0.1, kInfinity})
-    EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), by_brute_force(points, queries, limit)) << limit;
+    EXPECT_EQ(NearestTracker(tree).nearest(queries, limit), testing::reference_nearest_rows(points, queries, limit))
+        << limit;
 }
 
 /// Middles of lattice cells: eight points tie exactly, others after a step to a face or an edge.
@@ -82,7 +69,7 @@ TEST(NearestPoints, TiesGoToTheLowestRow) {
         Eigen::RowVector3d(0.5, 0.25, 0.5), Eigen::RowVector3d(0.5, 0.5, 0.5)}) {
     const Points queries = points.rowwise() + step;
     for (const double limit : {std::sqrt(0.75), 5.0})
-      EXPECT_EQ(tracker.nearest(queries, limit), by_brute_force(points, queries, limit));
+      EXPECT_EQ(tracker.nearest(queries, limit), testing::reference_nearest_rows(points, queries, limit));
   }
   Points twins(3, 3);
   twins << 1, 1, 1, 0, 0, 0, 0, 0, 0;
@@ -104,11 +91,11 @@ TEST(NearestPoints, QueriesAreFollowedExactly) {
       motion.rotation = Eigen::AngleAxisd(length, random.direction()).toRotationMatrix();
       motion.translation = length * random.direction();
       queries = motion.apply(queries);
-      ASSERT_EQ(tracker.nearest(queries, limit), by_brute_force(points, queries, limit)) << step;
+      ASSERT_EQ(tracker.nearest(queries, limit), testing::reference_nearest_rows(points, queries, limit)) << step;
       ++step;
     }
   const Points fewer = queries.topRows(100);
-  EXPECT_EQ(tracker.nearest(fewer, 0.2), by_brute_force(points, fewer, 0.2));
+  EXPECT_EQ(tracker.nearest(fewer, 0.2), testing::reference_nearest_rows(points, fewer, 0.2));
 }
 
 /// Every point twice, in different rows, and queries on the points, between them and around.
@@ -118,14 +105,14 @@ TEST(NearestPoints, OfTwinsTheLowerRowIsFound) {
   NearestTracker tracker(tree);
   for (const double scale : {1.0, 1.02, 1.1}) {
     const Points queries = scale * points;
-    EXPECT_EQ(tracker.nearest(queries, 0.2), by_brute_force(points, queries, 0.2)) << scale;
+    EXPECT_EQ(tracker.nearest(queries, 0.2), testing::reference_nearest_rows(points, queries, 0.2)) << scale;
   }
 }
 
 TEST(NearestPoints, PairsHoldThePlacesOfBothSides) {
   const Points points = testing::uniform_points(3000, 10), queries = testing::uniform_points(1003, 11);
   const PointTree tree(points);
-  const Indices expected = by_brute_force(points, queries, 0.08);
+  const Indices expected = testing::reference_nearest_rows(points, queries, 0.08);
   NearestTracker tracker(tree);
   for (int time = 0; time < 2; ++time) {
     const PointPairs& pairs = tracker.pair(queries, 0.08);
@@ -167,13 +154,13 @@ TEST(NearestPoints, WhatIsNotFiniteIsNeverFound) {
   queries.row(3).setConstant(kNaN);
   queries.row(4).setConstant(kInfinity);
   NearestTracker tracker(tree);
-  const Indices first = tracker.nearest(queries, 10), expected = by_brute_force(points, queries, 10);
+  const Indices first = tracker.nearest(queries, 10), expected = testing::reference_nearest_rows(points, queries, 10);
   EXPECT_EQ(first, expected);
   EXPECT_EQ(first[3], -1);
   EXPECT_EQ(first[4], -1);
   EXPECT_EQ(tracker.nearest(queries, 10), expected) << "twice";
   queries.row(3).setZero();
-  EXPECT_EQ(tracker.nearest(queries, 10), by_brute_force(points, queries, 10)) << "and after that";
+  EXPECT_EQ(tracker.nearest(queries, 10), testing::reference_nearest_rows(points, queries, 10)) << "and after that";
   EXPECT_THAT(tracker.nearest(queries, kNaN), Each(-1));
 }
 
@@ -188,12 +175,12 @@ TEST(NearestPoints, NothingHasNoNearest) {
   EXPECT_THAT(NearestTracker(none_finite).nearest(Points::Zero(1, 3), 9), ElementsAre(-1));
 }
 
-TEST(NearestPoints, EveryVectorLevelFindsTheSame) {
+TEST(NearestPoints, EveryTargetFindsTheSame) {
   const Points points = testing::clustered_points(2000, 8), queries = places_around(points, 0.01, 9);
   const PointTree tree(points);
-  const Indices expected = by_brute_force(points, queries, 0.02);
-  for (const VectorLevel level : testing::available_levels()) {
-    const testing::ForcedLevel forced(level);
+  const Indices expected = testing::reference_nearest_rows(points, queries, 0.02);
+  for (const std::int64_t each : testing::available_targets()) {
+    const testing::ForcedTarget forced(each);
     EXPECT_EQ(NearestTracker(tree).nearest(queries, 0.02), expected);
   }
 }

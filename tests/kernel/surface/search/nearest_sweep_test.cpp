@@ -134,8 +134,8 @@ TEST(NearestSweep, DecidesWhatFloatsCannotTellApart) {
   for (const double spread : {1e-12, 1e-9, 1e-7, 3e-7, 1e-6, 1e-5, 1e-3}) {
     SCOPED_TRACE(spread);
     const Points points = shells(kShells, spread);
-    for (const VectorLevel level : testing::available_levels()) {
-      const testing::ForcedLevel forced(level);
+    for (const std::int64_t each : testing::available_targets()) {
+      const testing::ForcedTarget forced(each);
       const Points normals = estimate_normals({points, Triangles(0, 3)});
       for (int row = 0; row < points.rows(); row += 31) expect_fits(points, row, 20, normals.row(row));
     }

@@ -14,8 +14,40 @@
 #include "tests/support/reference_surface.h"
 #include "tests/support/renumbering.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/kernel/surface/search/point_grid_test.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/surface/search/packed_slots-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
+namespace {
+
+/// Calls visit(place, dx) for what lanes see inside; returns how many places there are.
+int visit_places(const PointGrid& grid, const SlotRange* first, const SlotRange* last, const Eigen::Vector3d& center,
+                 double squared, const std::function<void(int, double)>& visit) {
+  PackedSlots<3> places;
+  places.collect({&grid.x(), &grid.y(), &grid.z()}, first, last);
+  visit_within(places, center.x(), center.y(), center.z(), squared,
+               [&](auto inside, Lanes dx, Lanes, Lanes, int i) HWY_ATTR {
+                 double x[kLanes];
+                 dx.store(x);
+                 for (int lane = 0; lane < kLanes; ++lane)
+                   if ((bits(inside) >> lane & 1) != 0) visit(i + lane, x[lane]);
+               });
+  return places.size();
+}
+
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace corral {
 namespace {
+
+HWY_EXPORT(visit_places);
 
 using ::testing::Each;
 using testing::hard_point_sets;
@@ -43,23 +75,13 @@ Indices rows_within(const PointGrid& grid, const SlotRange* first, const SlotRan
   Indices rows, slots;
   for (const SlotRange* range = first; range != last; ++range)
     for (int slot = range->begin; slot < range->end; ++slot) slots.push_back(slot);
-  vectorized([&](auto kind) {
-    using Lanes = typename decltype(kind)::Lanes;
-    PackedSlots<3> places;
-    places.collect<Lanes>({&grid.x(), &grid.y(), &grid.z()}, first, last);
-    EXPECT_EQ(places.size(), static_cast<int>(slots.size()));
-    visit_within<Lanes>(places, center.x(), center.y(), center.z(), radius * radius,
-                        [&](auto inside, Lanes dx, Lanes, Lanes, int i) {
-                          double x[kLanes];
-                          dx.store(x);
-                          for (unsigned left = bits(inside); left != 0; left &= left - 1) {
-                            const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
-                            const int slot = slots.at(static_cast<std::size_t>(i) + lane);
-                            rows.push_back(grid.row(slot));
-                            EXPECT_EQ(x[lane], grid.x()[static_cast<std::size_t>(slot)] - center.x());
-                          }
-                        });
-  });
+  EXPECT_EQ(HWY_DYNAMIC_DISPATCH(visit_places)(grid, first, last, center, radius * radius,
+                                               [&](int i, double x) {
+                                                 const int slot = slots.at(static_cast<std::size_t>(i));
+                                                 rows.push_back(grid.row(slot));
+                                                 EXPECT_EQ(x, grid.x()[static_cast<std::size_t>(slot)] - center.x());
+                                               }),
+            static_cast<int>(slots.size()));
   std::sort(rows.begin(), rows.end());
   return rows;
 }
@@ -164,15 +186,15 @@ TEST(PointGrid, SweepsTellTheSameFromAnyStart) {
     }
 }
 
-TEST(PointGrid, EveryVectorLevelSeesTheSame) {
+TEST(PointGrid, EveryTargetSeesTheSame) {
   for (const PointSet& set : hard_point_sets()) {
     const PointGrid grid(set.points, set.unit);
     const CellNeighborhoods around(grid, 1);
     for (int slot = 0; slot < grid.size(); slot += 1 + grid.size() / 20) {
       const int cell = grid.cell_of(slot);
       const Indices expected = rows_of(testing::reference_within(set.points, place(grid, slot), 0.9 * set.unit));
-      for (const VectorLevel level : testing::available_levels()) {
-        const testing::ForcedLevel forced(level);
+      for (const std::int64_t each : testing::available_targets()) {
+        const testing::ForcedTarget forced(each);
         ASSERT_EQ(rows_within(grid, around.begin(cell), around.end(cell), place(grid, slot), 0.9 * set.unit), expected)
             << set.name;
       }
@@ -245,3 +267,4 @@ TEST(PointGrid, ExtentsThatAreNoNumbersDoNotCrash) {
 
 }  // namespace
 }  // namespace corral
+#endif

@@ -1,47 +1,51 @@
 // SPDX-License-Identifier: MIT
-#pragma once
+// Finding the nearest neighbours of every point with a grid. Compiled once for each target; only sources with
+// foreach_target.h include this.
+#if defined(CORRAL_KERNEL_SURFACE_SEARCH_NEAREST_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef CORRAL_KERNEL_SURFACE_SEARCH_NEAREST_SWEEP_INL_H
+#undef CORRAL_KERNEL_SURFACE_SEARCH_NEAREST_SWEEP_INL_H
+#else
+#define CORRAL_KERNEL_SURFACE_SEARCH_NEAREST_SWEEP_INL_H
+#endif
 
 #include <algorithm>
 #include <limits>
 #include <vector>
 
 #include "kernel/parallel.h"
-#include "kernel/surface/search/point_grid.h"
+#include "kernel/surface/search/packed_slots-inl.h"
 
-namespace corral {
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 
-// Finding the nearest neighbours of every point with a grid. Only sources include this.
-
-/// Calls attempt(slot, first, last, are_new, sure_squared, lanes) for every slot with ranges of slots that hold all points
-/// within a squared distance, and whether they are others than in the call before of this thread; `attempt` says whether
-/// that was enough. If it was not it is called again with more cells, and at last
-/// for a few with all slots. The slots for which that would take long (far apart, or crowded) are returned, ascending.
+/// Calls worker.attempt(slot, first, last, are_new, sure_squared) for every slot with ranges of slots that hold all points
+/// within a squared distance, and whether they are others than in the call before of this worker; it says whether that was
+/// enough. If it was not it is called again with more cells, and at last for a few with all slots. The slots for which that
+/// would take long (far apart, or crowded) are returned, ascending.
 class NearestSweep {
  public:
   explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}
 
-  template <class Attempt>
-  std::vector<int> run(const ParallelFor& parallel, const Attempt& attempt) const {
+  /// make_worker() is called for every block of slots; what it returns may hold scratch.
+  template <class MakeWorker>
+  std::vector<int> run(const ParallelFor& parallel, const MakeWorker& make_worker) const {
     const int blocks = (grid_.cells() + kCellsPerBlock - 1) / kCellsPerBlock;
     std::vector<std::vector<int>> left(static_cast<std::size_t>(blocks));
-    parallel(blocks, [&](int block) {
+    parallel(blocks, [&](int block) HWY_ATTR {
       auto& slots = left[static_cast<std::size_t>(block)];
       for (int slot = grid_.begin(block * kCellsPerBlock);
            slot < grid_.begin(std::min(grid_.cells(), (block + 1) * kCellsPerBlock)); ++slot)
         slots.push_back(slot);
-      vectorized([&](auto kind) {
-        for (const int reach : {1, 2, 4, 9}) search(kind, reach, attempt, slots);
-      });
+      auto worker = make_worker();
+      for (const int reach : {1, 2, 4, 9}) search(reach, worker, slots);
     });
     std::vector<int> all;
     for (const auto& slots : left) all.insert(all.end(), slots.begin(), slots.end());
     if (static_cast<double>(all.size()) * grid_.size() > kMostWork) return all;
     const SlotRange everything{0, grid_.size()};
-    parallel(static_cast<int>(all.size()), [&](int i) {
-      vectorized([&](auto kind) {
-        attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, true,
-                std::numeric_limits<double>::infinity(), kind);
-      });
+    parallel(static_cast<int>(all.size()), [&](int i) HWY_ATTR {
+      make_worker().attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, true,
+                            std::numeric_limits<double>::infinity());
     });
     return {};
   }
@@ -52,8 +56,8 @@ class NearestSweep {
   static constexpr double kMostWork = 3e7;  // distances, some hundredths of a second
 
   /// Keeps in `slots` those that are left.
-  template <class Kind, class Attempt>
-  CORRAL_INLINE void search(Kind kind, int reach, const Attempt& attempt, std::vector<int>& slots) const {
+  template <class Worker>
+  HWY_FLATTEN void search(int reach, Worker& worker, std::vector<int>& slots) const {
     CellSweep sweep(grid_, reach);
     std::vector<SlotRange> ranges;
     std::vector<int> left;
@@ -70,7 +74,7 @@ class NearestSweep {
         for (const SlotRange& range : ranges) crowd += range.end - range.begin;
       }
       const double sure = grid_.sure_radius(from_faces_[static_cast<std::size_t>(slot)], reach);
-      if (crowd > kCrowd || !attempt(slot, ranges.data(), ranges.data() + ranges.size(), are_new, sure * sure, kind))
+      if (crowd > kCrowd || !worker.attempt(slot, ranges.data(), ranges.data() + ranges.size(), are_new, sure * sure))
         left.push_back(slot);
       are_new = false;
     }
@@ -81,8 +85,7 @@ class NearestSweep {
   const AlignedColumn from_faces_;  // by slot
 };
 
-/// point_resolution() of points whose neighbours were looked at (in resolution.cpp). `squares`: by slot, the squared distance
-/// to the nearest point in another place; infinite where it is not known.
-double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares);
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
 
-}  // namespace corral
+#endif

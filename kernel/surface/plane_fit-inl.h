@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-#pragma once
+// The arithmetic of a plane through the points around a vertex, on lanes. Compiled once for each target; only sources with
+// foreach_target.h include this.
+#if defined(CORRAL_KERNEL_SURFACE_PLANE_FIT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef CORRAL_KERNEL_SURFACE_PLANE_FIT_INL_H
+#undef CORRAL_KERNEL_SURFACE_PLANE_FIT_INL_H
+#else
+#define CORRAL_KERNEL_SURFACE_PLANE_FIT_INL_H
+#endif
 
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 
 #include "kernel/parallel.h"
-#include "kernel/surface/search/point_grid.h"
-#include "kernel/vectorized.h"
+#include "kernel/surface/search/packed_slots-inl.h"
 
-namespace corral {
-
-// The arithmetic of a plane through the points around a vertex, on lanes. Only sources include this.
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
 
 /// Second moments of some vectors: xx, xy, xz, yy, yz, zz.
 template <class Number>
@@ -26,7 +31,7 @@ struct SymmetricEigen {
   Lanes value[3];
   Lanes vector[3][3];  ///< [component][which]
 
-  CORRAL_INLINE explicit SymmetricEigen(const Moments<Lanes>& m) {
+  HWY_INLINE explicit SymmetricEigen(const Moments<Lanes>& m) {
     Lanes a[3][3] = {{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) vector[i][j] = Lanes::fill(i == j ? 1 : 0);
@@ -41,7 +46,7 @@ struct SymmetricEigen {
 
  private:
   /// Makes a[p][q] zero; r is the third index.
-  CORRAL_INLINE void rotate(Lanes (&a)[3][3], int p, int q, int r) {
+  HWY_INLINE void rotate(Lanes (&a)[3][3], int p, int q, int r) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     const auto is_zero = a[p][q] == zero;
     const Lanes theta = (a[q][q] - a[p][p]) / (a[p][q] + a[p][q]);
@@ -76,19 +81,18 @@ struct PlaneFits {
   }
 
   /// The moments of the points around a slot within a squared distance; returns how many there are.
-  template <class Lanes>
-  CORRAL_INLINE int fit(std::size_t slot, const PointGrid& grid, const PackedSlots<3>& around, double squared) {
+  HWY_INLINE int fit(std::size_t slot, const PointGrid& grid, const PackedSlots<3>& around, double squared) {
     const Lanes zero = Lanes::fill(0), one = Lanes::fill(1);
     Lanes n = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero,
           szz = zero;
-    visit_within<Lanes>(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
-                        [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) {
-                          dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
-                          n = n + select(inside, one, zero);
-                          sx = sx + dx, sy = sy + dy, sz = sz + dz;
-                          sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
-                          syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
-                        });
+    visit_within(around, grid.x()[slot], grid.y()[slot], grid.z()[slot], squared,
+                 [&](auto inside, Lanes dx, Lanes dy, Lanes dz, int) HWY_ATTR {
+                   dx = select(inside, dx, zero), dy = select(inside, dy, zero), dz = select(inside, dz, zero);
+                   n = n + select(inside, one, zero);
+                   sx = sx + dx, sy = sy + dy, sz = sz + dz;
+                   sxx = sxx + dx * dx, sxy = sxy + dx * dy, sxz = sxz + dx * dz;
+                   syy = syy + dy * dy, syz = syz + dy * dz, szz = szz + dz * dz;
+                 });
     const Sums sums{sum(n), sum(sx), sum(sy), sum(sz), {sum(sxx), sum(sxy), sum(sxz), sum(syy), sum(syz), sum(szz)}};
     put(slot, sums);
     return static_cast<int>(sums.count);
@@ -96,9 +100,8 @@ struct PlaneFits {
 
   /// The moments of so many chosen points about one of them; the columns go on with that one up to a multiple of eight.
   /// Returns the squared distance of the nearest in another place, infinite if there is none.
-  template <class Lanes>
-  CORRAL_INLINE double fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
-                                  double own_x, double own_y, double own_z) {
+  HWY_INLINE double fit_chosen(std::size_t at, const double* x, const double* y, const double* z, int count,
+                               double own_x, double own_y, double own_z) {
     const Lanes zero = Lanes::fill(0), cx = Lanes::fill(own_x), cy = Lanes::fill(own_y), cz = Lanes::fill(own_z),
                 none = Lanes::fill(std::numeric_limits<double>::infinity());
     Lanes sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero, szz = zero,
@@ -119,9 +122,9 @@ struct PlaneFits {
   /// All normals, in blocks.
   void solve_all(const ParallelFor& parallel) {
     constexpr std::size_t kBlock = 4096;
-    parallel(static_cast<int>((xx.size() + kBlock - 1) / kBlock), [this](int block) {
+    parallel(static_cast<int>((xx.size() + kBlock - 1) / kBlock), [this](int block) HWY_ATTR {
       const auto first = static_cast<std::size_t>(block) * kBlock;
-      vectorized([&](auto kind) { solve<typename decltype(kind)::Lanes>(first, std::min(first + kBlock, xx.size())); });
+      solve(first, std::min(first + kBlock, xx.size()));
     });
   }
 
@@ -141,25 +144,27 @@ struct PlaneFits {
 
   /// Normals from moments: the direction of least variance; zero where fewer than two directions have any (too few points,
   /// or all on one line).
-  template <class Eight>
-  CORRAL_INLINE void solve(std::size_t first, std::size_t last) {
-    using Lanes = lanes::Pair<lanes::Pair<Eight>>;  // four chains of divisions and roots at once hide their latency
-    for (std::size_t i = first; i < last; i += Lanes::kCount) {
-      const SymmetricEigen<Lanes> eigen({Lanes::load(&xx[i]), Lanes::load(&xy[i]), Lanes::load(&xz[i]),
-                                         Lanes::load(&yy[i]), Lanes::load(&yz[i]), Lanes::load(&zz[i])});
-      const Lanes &a = eigen.value[0], &b = eigen.value[1], &c = eigen.value[2];
-      const Lanes low_ab = select(a <= b, a, b), high_ab = select(a <= b, b, a);
-      const Lanes largest = select(high_ab <= c, c, high_ab);
-      const Lanes below = select(high_ab <= c, high_ab, c), middle = select(below <= low_ab, low_ab, below);
-      const auto is_plane = Lanes::fill(1e-12) * largest < middle;
-      const auto pick = [&](int component) {
-        const Lanes(&v)[3] = eigen.vector[component];
-        const Lanes of_low = select(a <= b, v[0], v[1]);
-        return select(is_plane, select(low_ab <= c, of_low, v[2]), Lanes::fill(0));
+  HWY_FLATTEN void solve(std::size_t first, std::size_t last) {
+    using Four = Pair<Pair<Lanes>>;  // four chains of divisions and roots at once hide their latency
+    for (std::size_t i = first; i < last; i += Four::kCount) {
+      const SymmetricEigen<Four> eigen({Four::load(&xx[i]), Four::load(&xy[i]), Four::load(&xz[i]), Four::load(&yy[i]),
+                                        Four::load(&yz[i]), Four::load(&zz[i])});
+      const Four &a = eigen.value[0], &b = eigen.value[1], &c = eigen.value[2];
+      const Four low_ab = select(a <= b, a, b), high_ab = select(a <= b, b, a);
+      const Four largest = select(high_ab <= c, c, high_ab);
+      const Four below = select(high_ab <= c, high_ab, c), middle = select(below <= low_ab, low_ab, below);
+      const auto is_plane = Four::fill(1e-12) * largest < middle;
+      const auto pick = [&](int component) HWY_ATTR {
+        const Four(&v)[3] = eigen.vector[component];
+        const Four of_low = select(a <= b, v[0], v[1]);
+        return select(is_plane, select(low_ab <= c, of_low, v[2]), Four::fill(0));
       };
       pick(0).store(&nx[i]), pick(1).store(&ny[i]), pick(2).store(&nz[i]);
     }
   }
 };
 
-}  // namespace corral
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
