@@ -193,8 +193,8 @@ TEST(DescribeFpfh, SameBitsHoweverItRuns) {
     const Descriptors expected = describe(surface, rows, options);
     expect_identical(describe(surface, rows, options, testing::last_first), expected);
     expect_identical(describe(surface, rows, options, testing::on_three_threads), expected);
-    for (const VectorLevel level : testing::available_levels()) {
-      const testing::ForcedLevel forced(level);
+    for (const std::int64_t target : testing::available_targets()) {
+      const testing::ForcedTarget forced(target);
       expect_identical(describe(surface, rows, options), expected);
     }
     Indices renamed;

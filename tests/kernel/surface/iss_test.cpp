@@ -208,8 +208,8 @@ TEST(DetectIss, SameBitsHoweverItRuns) {
     EXPECT_TRUE(iss_saliency(other, resolution, with(weights)) == expected(old_row));
     const Indices keypoints = detect_iss(mesh, resolution, with(weights)).vertices;
     EXPECT_EQ(testing::by_old_name(detect_iss(other, resolution, with(weights)).vertices, old_row), keypoints);
-    for (const VectorLevel level : testing::available_levels()) {
-      const testing::ForcedLevel forced(level);
+    for (const std::int64_t target : testing::available_targets()) {
+      const testing::ForcedTarget forced(target);
       EXPECT_TRUE(iss_saliency(mesh, resolution, with(weights)) == expected);
       EXPECT_EQ(detect_iss(mesh, resolution, with(weights)).vertices, keypoints);
     }
