@@ -4,8 +4,8 @@
 #include <new>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/build_info.h"
+#include "apps/runtime/output.h"
 #include "io/toml_file.h"
 #include "kernel/error.h"
 
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
   corral::add_group(app, action);
   corral::add_refine(app, action);
   corral::add_score(app, action);
-  corral::add_groupers(app, action);
+  corral::add_tables(app, action);
   corral::add_perturb(app, action);
   corral::add_scan(app, action);
   corral::add_triangulate(app, action);

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral {
 

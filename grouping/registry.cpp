@@ -46,13 +46,6 @@ const std::vector<Grouper>& groupers() {
   return table;
 }
 
-const Grouper& find_grouper(const std::string& name) {
-  std::string known;
-  for (const Grouper& grouper : groupers()) {
-    if (grouper.name == name) return grouper;
-    known += (known.empty() ? "" : "|") + grouper.name;
-  }
-  throw InvalidInput("grouping", "method", "'" + name + "'", known);
-}
+const Grouper& find_grouper(const std::string& name) { return find_entry(groupers(), "grouper", name); }
 
 }  // namespace corral

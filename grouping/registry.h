@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
+#include "kernel/table_entry.h"
 
 namespace corral {
 
@@ -16,17 +16,9 @@ struct ConfiguredGrouper {
   std::function<double(int matches)> working_memory = {};  ///< bytes at most (see grouper.h); empty if nobody knows
 };
 
-/// One method as the command line, the tests and the README know it.
-struct Grouper {
-  std::string name;                                                    ///< "gc"
-  std::string title;                                                   ///< "Geometric consistency (GC)"
-  std::string principle;                                               ///< one line
-  std::string citation;                                                ///< key in paper/references.bib
-  std::vector<OptionValue> options;                                    ///< the defaults
-  std::function<ConfiguredGrouper(const OptionOverrides&)> configure;  ///< throws InvalidInput as parse_options does
-};
+using Grouper = TableEntry<ConfiguredGrouper>;
 
-/// Every method, in the order of the paper.
+/// Every grouper, in the order of the paper.
 const std::vector<Grouper>& groupers();
 
 /// Throws InvalidInput for an unknown name, listing the known ones.

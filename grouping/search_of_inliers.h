@@ -4,8 +4,8 @@
 #include <array>
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
 #include "grouping/otsu.h"
+#include "kernel/options.h"
 
 namespace corral {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "grouping/grouper.h"
-#include "grouping/options.h"
 #include "grouping/otsu.h"
+#include "kernel/options.h"
 
 namespace corral {
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <utility>
 
 #include "io/file.h"
 #include "kernel/error.h"
@@ -21,15 +23,18 @@ std::string ending_of(const std::string& path) {
 }
 
 using Parser = Mesh (*)(const std::string& path, std::string_view content);
+
+/// Every format that is read, by the ending of the name.
+constexpr std::pair<const char*, Parser> kFormats[] = {
+    {".ply", parse_ply}, {".off", parse_off}, {".obj", parse_obj},
+    {".stl", parse_stl}, {".xyz", parse_xyz}, {".pcd", parse_pcd},
+};
+
 Parser parser_of(const std::string& path) {
   const std::string ending = ending_of(path);
-  return ending == ".ply"   ? parse_ply
-         : ending == ".off" ? parse_off
-         : ending == ".obj" ? parse_obj
-         : ending == ".stl" ? parse_stl
-         : ending == ".xyz" ? parse_xyz
-         : ending == ".pcd" ? parse_pcd
-                            : nullptr;
+  for (const auto& [known, parser] : kFormats)
+    if (ending == known) return parser;
+  return nullptr;
 }
 
 std::string ply_header(const std::string& format, const Mesh& mesh) {
@@ -57,13 +62,22 @@ Triangles TriangleBuilder::build() const {
       corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
 }
 
+std::string mesh_endings() {
+  std::string text;
+  std::size_t left = std::size(kFormats);
+  for (const auto& [ending, parser] : kFormats) {
+    text += (text.empty() ? "" : left == 1 ? " or " : ", ") + std::string(ending);
+    --left;
+  }
+  return text;
+}
+
 bool is_mesh_name(const std::string& path) { return parser_of(path) != nullptr; }
 
 Mesh read_mesh(const std::string& path) {
   const Parser parser = parser_of(path);
   const std::string content = read_file(path);
-  if (!parser)
-    throw IoError(path, "", "unknown mesh format, expected a name that ends in " + std::string(kMeshEndings));
+  if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in " + mesh_endings());
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
   return parser(path, content);
 }

@@ -15,7 +15,7 @@ constexpr double kThinnest = 1e-6;
 
 /// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an
 /// offset of the coordinates costs no digits.
-struct CentredRows : PointPairs {
+struct CentredRows : MatchedPoints {
   Eigen::Vector3d source_mean, target_mean;  // mesh units
 
   CentredRows(const CorrespondenceSet& matches, const Indices& rows) {
@@ -38,14 +38,14 @@ bool span_a_plane(const Points& centred, double mean = 0) {
 }
 
 /// The same of the source points as far as their rows still have a weight.
-bool kept_rows_span_a_plane(const RigidTransform& pose, const PointPairs& pairs, const ScaledLoss& loss) {
+bool kept_rows_span_a_plane(const RigidTransform& pose, const MatchedPoints& pairs, const ScaledLoss& loss) {
   Eigen::VectorXd weights = (pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm();
   for (double& weight : weights) weight = evaluate_loss(loss, weight).weight;
   const Eigen::RowVector3d mean = weights.transpose() * pairs.source / weights.sum();
   return span_a_plane(weights.cwiseSqrt().asDiagonal() * (pairs.source.rowwise() - mean));
 }
 
-double rms(const RigidTransform& pose, const PointPairs& pairs) {
+double rms(const RigidTransform& pose, const MatchedPoints& pairs) {
   return std::sqrt((pose.apply(pairs.source) - pairs.target).squaredNorm() / static_cast<double>(pairs.source.rows()));
 }
 
@@ -69,7 +69,7 @@ PoseCovariance uncentred(const PoseCovariance& covariance, const RigidTransform&
 }
 
 /// s^2 of the header.
-double residual_variance(const RigidTransform& pose, const PointPairs& pairs, const ScaledLoss& loss) {
+double residual_variance(const RigidTransform& pose, const MatchedPoints& pairs, const ScaledLoss& loss) {
   const double count = static_cast<double>(pairs.source.rows());
   const Eigen::VectorXd squares = (pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm();
   double pulls = 0, weights = 0, slopes = 0, slope_squares = 0;

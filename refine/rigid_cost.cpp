@@ -3,7 +3,7 @@
 
 namespace corral {
 
-RigidCost rigid_cost(const PointPairs& pairs, const RigidTransform& pose, const ScaledLoss& loss) {
+RigidCost rigid_cost(const MatchedPoints& pairs, const RigidTransform& pose, const ScaledLoss& loss) {
   RigidCost sums;
   double weights = 0;
   Eigen::Vector3d pull = Eigen::Vector3d::Zero(), torque = pull, arms = pull;

@@ -9,7 +9,7 @@
 namespace corral {
 
 /// N points and where each should go: N x 3 both.
-struct PointPairs {
+struct MatchedPoints {
   Points source, target;
 };
 
@@ -25,7 +25,7 @@ struct RigidCost {
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-RigidCost rigid_cost(const PointPairs& pairs, const RigidTransform& pose, const ScaledLoss& loss);
+RigidCost rigid_cost(const MatchedPoints& pairs, const RigidTransform& pose, const ScaledLoss& loss);
 
 /// dw / dq: the turn w of R <- exp([w]) R to which a small change of its unit quaternion (x, y, z, w) amounts.
 Eigen::Matrix<double, 3, 4> turn_by_quaternion(const Eigen::Quaterniond& rotation);

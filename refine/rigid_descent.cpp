@@ -21,7 +21,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// as rho is. Ceres then sees the true robust cost at the price of one pass over the pairs.
 class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
  public:
-  RigidCostFunction(const PointPairs& pairs, const ScaledLoss& loss, double extent)
+  RigidCostFunction(const MatchedPoints& pairs, const ScaledLoss& loss, double extent)
       : pairs_(pairs), loss_(loss), extent_(extent) {}
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
@@ -50,7 +50,7 @@ class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
   }
 
  private:
-  const PointPairs& pairs_;
+  const MatchedPoints& pairs_;
   const ScaledLoss loss_;
   const double extent_;
 };
@@ -67,7 +67,7 @@ ceres::Solver::Options solver_options(double tolerance, int iterations) {
   return solver;
 }
 
-RigidDescent descend(const PointPairs& pairs, const RigidTransform& start, const ScaledLoss& loss,
+RigidDescent descend(const MatchedPoints& pairs, const RigidTransform& start, const ScaledLoss& loss,
                      const ceres::Solver::Options& solver) {
   RigidDescent found{start, rigid_cost(pairs, start, loss).cost, false, false, 0};
   const double extent = pairs.source.norm() / std::sqrt(static_cast<double>(pairs.source.rows()));
@@ -94,13 +94,13 @@ RigidDescent descend(const PointPairs& pairs, const RigidTransform& start, const
   return found;
 }
 
-double largest_residual(const PointPairs& pairs, const RigidTransform& pose) {
+double largest_residual(const MatchedPoints& pairs, const RigidTransform& pose) {
   return std::sqrt((pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm().maxCoeff());
 }
 
 }  // namespace
 
-RigidDescent descend_rigid_cost(const PointPairs& pairs, const RigidTransform& start, const ScaledLoss& loss,
+RigidDescent descend_rigid_cost(const MatchedPoints& pairs, const RigidTransform& start, const ScaledLoss& loss,
                                 int maximum_iterations) {
   RigidDescent direct = descend(pairs, start, loss, solver_options(kRest, maximum_iterations));
   double scale = largest_residual(pairs, start) / graduation_reach(loss.loss);

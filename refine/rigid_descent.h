@@ -23,7 +23,7 @@ struct RigidDescent {
 /// Deterministic: same input, same bytes.
 /// Departs   [yang2020graduated] divides a^2 by 1.4 and solves each round in closed form; here a halves, Ceres solves, and
 ///           the descent from the start at once competes, so that the cost never rises.
-RigidDescent descend_rigid_cost(const PointPairs& pairs, const RigidTransform& start, const ScaledLoss& loss,
+RigidDescent descend_rigid_cost(const MatchedPoints& pairs, const RigidTransform& start, const ScaledLoss& loss,
                                 int maximum_iterations);
 
 }  // namespace corral

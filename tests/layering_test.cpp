@@ -27,17 +27,48 @@ struct Room {
   Names libraries;  ///< owners of <...> headers that it may include, beside the standard library
 };
 
-// Rooms by folder; the longest that fits a file is its room.
-const std::map<std::string, Room> kRooms = {
-    {"kernel", {{"kernel"}, {"Eigen"}}},
-    {"kernel/surface", {{"kernel", "kernel/surface"}, {"Eigen", "CGAL", "OpenMesh", "flann", "boost"}}},
-    {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
-    {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
-    {"io", {{"kernel", "kernel/surface", "io"}, {"Eigen", "toml++"}}},
-    {"apps",
-     {{"kernel", "kernel/surface", "grouping", "refine", "io", "apps"},
-      {"Eigen", "CLI", "nlohmann", "oneapi", "boost"}}},
-};
+const Names kSurfaceLibraries = {"Eigen", "CGAL", "OpenMesh", "flann", "boost"};
+const Names kAppLibraries = {"Eigen", "CLI", "nlohmann", "oneapi", "boost"};
+
+/// The rooms of apps/ from the lowest to the highest: none includes one above it.
+const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "apps/pair",  "apps/align",
+                                             "apps/dataset", "apps/results", "apps/study", "apps/claims",
+                                             "apps/report",  "apps/commands"};
+
+/// Rooms by folder; the longest that fits a file is its room.
+std::map<std::string, Room> make_rooms() {
+  const std::string surface = "kernel/surface", mesh = surface + "/mesh", search = surface + "/search",
+                    matching = surface + "/matching", scan = surface + "/scan";
+  const Names all_of_surface = {surface, mesh, search, matching, scan};
+  std::map<std::string, Room> rooms = {
+      {"kernel", {{"kernel"}, {"Eigen"}}},
+      {mesh, {{"kernel", mesh}, kSurfaceLibraries}},
+      {search, {{"kernel", mesh, search}, kSurfaceLibraries}},
+      {matching, {{"kernel", matching}, kSurfaceLibraries}},
+      {scan, {{"kernel", mesh, search, scan}, kSurfaceLibraries}},
+      {"grouping", {{"kernel", "grouping"}, {"Eigen"}}},
+      {"refine", {{"kernel", "refine"}, {"Eigen", "ceres"}}},
+  };
+  Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "toml++"}};
+  pipeline.includes.insert("kernel");
+  io.includes.insert({"kernel", "io"});
+  rooms[surface] = pipeline;
+  rooms["io"] = io;
+  Names below = {"kernel", "grouping", "refine", "io"};
+  below.insert(all_of_surface.begin(), all_of_surface.end());
+  for (const std::string& floor : kAppFloors) {
+    below.insert(floor);
+    below.insert(floor + "/figure");
+    rooms[floor] = {below, kAppLibraries};
+  }
+  Names under_figures = rooms["apps/report"].includes;
+  under_figures.erase("apps/report");  // figures know no report
+  rooms["apps/report/figure"] = {under_figures, kAppLibraries};
+  rooms["apps"] = {below, kAppLibraries};  // the program itself
+  return rooms;
+}
+const std::map<std::string, Room> kRooms = make_rooms();
+
 const Names kNeverInHeaders = {"CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
@@ -108,7 +139,7 @@ TEST(Layering, LibrariesStayInTheirRooms) {
     if (is_library) {
       EXPECT_TRUE(kRooms.at(room).libraries.count(owner)) << include.file << " includes " << include.name;
     }
-    if (room != "apps") {
+    if (room.rfind("apps", 0) != 0) {
       EXPECT_FALSE(kOnlyInApps.count(include.name)) << include.file << " includes " << include.name;
     }
     if (is_header(include.file)) {
@@ -116,6 +147,42 @@ TEST(Layering, LibrariesStayInTheirRooms) {
     }
   }
   EXPECT_GT(checked, 100);
+}
+
+/// The rooms of the plan, so that a new folder is given a place in it.
+TEST(Layering, EveryFolderIsARoom) {
+  for (const std::string& file : source_files()) {
+    const std::string folder = fs::path(file).parent_path().generic_string();
+    if (folder.rfind("tests", 0) == 0) continue;
+    EXPECT_TRUE(kRooms.count(folder)) << folder << " is in no plan";
+  }
+}
+
+TEST(Layering, NoTypeIsDefinedInTwoHeaders) {
+  static const std::regex definition("^(?:struct|class|enum class) ([A-Z][A-Za-z0-9]*)[^;]*\\{");
+  std::map<std::string, std::string> first;
+  for (const std::string& file : source_files()) {
+    if (!is_header(file) || room_of(file).empty()) continue;
+    std::istringstream lines(read(kRoot / file));
+    std::smatch match;
+    for (std::string line; std::getline(lines, line);)
+      if (std::regex_search(line, match, definition)) {
+        const auto [place, is_new] = first.emplace(match[1], file);
+        EXPECT_TRUE(is_new) << match[1] << " stands in " << place->second << " and in " << file;
+      }
+  }
+  EXPECT_GT(first.size(), 100u);
+}
+
+TEST(Layering, TestsLieWhereTheirFilesLie) {
+  for (const std::string& file : source_files()) {
+    const fs::path path(file);
+    const std::string stem = path.stem().string();
+    if (path.begin()->string() != "tests" || stem.size() < 6 || stem.substr(stem.size() - 5) != "_test") continue;
+    const std::string room = path.parent_path().lexically_relative("tests").generic_string();
+    if (room == "." || room == "grouping/memory" || room == "apps/report/page") continue;  // tests of the whole
+    EXPECT_TRUE(kRooms.count(room)) << file << " mirrors no room";
+  }
 }
 
 TEST(Layering, EveryFileIsLicensedAndOfAReadableLength) {

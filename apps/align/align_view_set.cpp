@@ -47,8 +47,7 @@ class SetAlignment {
       MatchSettings own = settings;
       const Eigen::Vector3d sensor = views_.sensor(i);
       own.sensor.assign(sensor.data(), sensor.data() + 3);
-      features[static_cast<std::size_t>(i)] = describe_surface(
-          views_.mesh(i), estimate_normals(views_.mesh(i), normal_options(own)), views_.resolution(), own);
+      features[static_cast<std::size_t>(i)] = describe_surface(views_.mesh(i), views_.resolution(), own);
     });
     measure(all_pairs(views_.size()), "matching", 1, [&](int a, int b) {
       const CorrespondenceSet matches = match_surfaces(

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/runtime/text_table.h"
 #include "io/csv_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/align/align_view_set.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/json.h"
 #include "io/file.h"
 
 namespace corral {

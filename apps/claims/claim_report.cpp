@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/claims/claim_report.h"
+#include "apps/runtime/text_table.h"
 
 #include <algorithm>
 #include <cmath>

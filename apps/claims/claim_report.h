@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/claims/claims.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/json.h"
 
 namespace corral {
 

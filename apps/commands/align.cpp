@@ -6,9 +6,9 @@
 
 #include "apps/align/align_view_set.h"
 #include "apps/align/alignment_files.h"
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/pair/read_surface.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
 #include "kernel/error.h"

@@ -2,6 +2,7 @@
 // corral claims: which of the paper's statements a run bears out.
 #include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
+#include "apps/runtime/output.h"
 
 namespace corral {
 namespace {

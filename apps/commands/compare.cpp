@@ -4,7 +4,8 @@
 
 #include "apps/commands/commands.h"
 #include "apps/results/comparison.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 
 namespace corral {
 namespace {

@@ -2,11 +2,12 @@
 // corral dataset: what a study runs on. Checked, listed and measured here; made and imported in the files beside.
 #include <algorithm>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/dataset/check_dataset.h"
 #include "apps/dataset/measure_dataset.h"
 #include "apps/dataset/published_sets.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "io/csv_file.h"
 #include "io/file.h"
@@ -215,12 +216,6 @@ void add_measure(CLI::App& dataset, Action& action) {
 }
 
 }  // namespace
-
-void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "0: as many as there are; results do not depend on it")
-      ->check(CLI::Range(0, 256))
-      ->capture_default_str();
-}
 
 void add_dataset(CLI::App& app, Action& action) {
   auto* dataset = app.add_subcommand("dataset", "The sets that a study runs on: check, list, measure, make, import");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // corral dataset import: published folders as data sets. An importer is a function import_x(options, progress) that returns
 // what is to be said, and a function here.
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/dataset/import_b3r.h"
 #include "apps/dataset/import_u3m.h"
 #include "apps/dataset/import_u3or.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/workers.h"
 
 namespace corral {

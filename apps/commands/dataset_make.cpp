@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // corral dataset make: data sets from any meshes. A maker is a function make_x(options, progress) and a function here.
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/dataset/make_b3r.h"
 #include "apps/dataset/make_default.h"
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/workers.h"
 
 namespace corral {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <numeric>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
 #include "apps/picture/pair_picture.h"
-#include "apps/runtime/report.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/group_file.h"

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <map>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "apps/study/specification.h"
 #include "apps/study/study.h"
 #include "apps/study/time_study.h"
+#include "kernel/error.h"
 
 namespace corral {
 namespace {
@@ -16,6 +18,7 @@ namespace {
 struct Settings {
   std::vector<std::string> experiments;
   std::string data;
+  std::vector<std::string> set;
   StudySettings study;
   std::optional<int> jobs;
   bool dense = false, json = false;
@@ -116,16 +119,23 @@ std::string command_line(const Settings& settings) {
   line += " --data " + settings.data + " -o " + settings.study.run;
   if (settings.jobs) line += " --jobs " + std::to_string(*settings.jobs);
   if (!settings.study.cache.empty()) line += " --cache " + settings.study.cache;
+  for (const std::string& option : settings.set) line += " --set " + option;
   return line + (settings.dense ? " --dense" : "") + (settings.json ? " --json" : "");
 }
 
 int evaluate(Settings settings) {
   if (settings.jobs && (*settings.jobs < 1 || *settings.jobs > 256)) throw UsageError("--jobs: expected 1 .. 256");
   std::vector<Experiment> experiments;
+  const OptionsByName options = parse_set(settings.set);
   bool has_times = false;
   for (const std::string& name : settings.experiments) {
     experiments.push_back(read_experiment(name));
     experiments.back().dense = experiments.back().dense || settings.dense;
+    try {
+      override_options(experiments.back(), options);
+    } catch (const InvalidInput& error) {
+      throw UsageError(error.what());
+    }
     has_times = has_times || experiments.back().sweep == Sweep::TableSize;
   }
   if (has_times && experiments.size() > 1)
@@ -167,6 +177,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->add_option("--cache", settings->study.cache,
                    "Folder for features and matches, which runs may share; within the run's unless given")
       ->type_name("FOLDER");
+  add_set_option(*command, settings->set);
   command->add_flag("--dense", settings->dense, "Lay the whole surfaces on each other too, in columns of their own");
   command->add_flag("--json", settings->json, "A short account as JSON instead of the table");
   command->footer(footer());

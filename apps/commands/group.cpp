@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral group: one grouper on a table of matches.
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/pair/evaluate_pair.h"
-#include "apps/runtime/memory.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -21,7 +20,9 @@ struct Settings {
 };
 
 int group(const Settings& settings) {
-  const ConfiguredGrouper grouper = configure_grouper(settings.method, settings.set);
+  const OptionsByName options = parse_set(settings.set);
+  require_in_use(options, {settings.method});
+  const ConfiguredGrouper grouper = configure_grouper(settings.method, options);
   if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
   if (!settings.output.empty()) check_writable(settings.output);
   const CorrespondenceSet matches = read_matches(settings.matches);
@@ -50,45 +51,12 @@ int group(const Settings& settings) {
 
 }  // namespace
 
-std::string method_list(const std::string& separator) {
-  std::string names;
-  for (const Grouper& grouper : groupers()) names += (names.empty() ? "" : separator) + grouper.name;
-  return names;
-}
-
-ConfiguredGrouper configure_grouper(const std::string& method, const std::vector<std::string>& settings) {
-  OptionOverrides overrides;
-  for (const std::string& setting : settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0) throw UsageError("--set " + setting + ": expected key=value");
-    if (!overrides.emplace(setting.substr(0, equals), setting.substr(equals + 1)).second)
-      throw UsageError("--set " + setting + ": this key is set twice");
-  }
-  try {
-    return find_grouper(method).configure(overrides);
-  } catch (const InvalidInput& error) {
-    throw UsageError(error.what());
-  }
-}
-
-void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
-  bytes = static_cast<std::uint64_t>(half_of_memory());
-  command
-      .add_option("--memory-limit", bytes,
-                  "Most memory that a method may hold, such as 500MB or 2GB; one that would need more is not asked "
-                  "(default: half of the machine)")
-      ->transform(CLI::AsSizeValue(true));
-}
-
 void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper on a table of matches");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("-m,--method", settings->method, method_list("|"))->required();
-  command->add_option("--set", settings->set, "An option of the method as key=value; 'corral groupers' lists them")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  command->add_option("-m,--method", settings->method, names_of(groupers()))->required();
+  add_set_option(*command, settings->set);
   command->add_option("-o,--output", settings->output, "Where the selection goes (default: standard output)")
       ->type_name("FILE");
   command->add_option("--repeat", settings->repeat, "Timed calls; the median is reported")->capture_default_str();
@@ -97,7 +65,7 @@ void add_group(CLI::App& app, Action& action) {
                     "Counts and time as JSON on standard output (the selection then needs -o)");
   command->footer(
       "Examples:\n  corral group matches.csv --method gc -o group.csv\n"
-      "  corral group matches.csv --method ransac --set seed=7 --set iterations=1000 --json --repeat 10");
+      "  corral group matches.csv --method ransac --set ransac.seed=7 --set ransac.iterations=1000 --json --repeat 10");
   command->callback([settings, &action] { action = [settings] { return group(*settings); }; });
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
-#include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/match_report.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/matches_file.h"
@@ -13,10 +15,14 @@ namespace {
 struct Settings {
   std::string source, target, output;
   MatchSettings match;
+  std::vector<std::string> set;
   bool json = false, verbose = false;
 };
 
 int match(Settings settings) {
+  const OptionsByName options = parse_set(settings.set);
+  require_in_use(options, settings.match.in_use());
+  settings.match.options = options;
   check_usage(settings.match);
   settings.match.inspect = settings.verbose || settings.json;
   if (!settings.output.empty()) check_writable(settings.output);
@@ -24,7 +30,7 @@ int match(Settings settings) {
   MatchedPair pair;
   {
     Progress progress(match_stages(settings.match));
-    pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
+    pair = match_pair(source, target, settings.match, {[&](const std::string& stage) { progress.begin(stage); }});
   }
   if (settings.verbose)
     say(stage_report(pair.report));
@@ -37,46 +43,6 @@ int match(Settings settings) {
 
 }  // namespace
 
-void add_match_options(CLI::App& command, MatchSettings& settings) {
-  const auto option = [&](const std::string& name, auto& value, const std::string& text) {
-    return command.add_option(name, value, text)->capture_default_str()->group("Matching");
-  };
-  option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units");
-  option("--detector", settings.detector,
-         "harris (on the points), harris-mesh (on the faces), or uniform (a control: one vertex per cube)");
-  option("--keypoint-radius-pr", settings.keypoint_radius_pr,
-         "Radius of harris and its suppression, of the ball of harris-mesh; spacing of uniform");
-  option("--mesh-neighborhood", settings.harris_mesh.neighborhood, "harris-mesh: adaptive, rings or ball");
-  option("--mesh-rings", settings.harris_mesh.rings, "harris-mesh: edges to the rim of its rings");
-  option("--mesh-extent", settings.harris_mesh.extent, "harris-mesh: reach of adaptive, a share of the diagonal");
-  option("--mesh-selection", settings.harris_mesh.selection, "harris-mesh: fraction or clustering");
-  option("--mesh-fraction", settings.harris_mesh.fraction, "harris-mesh: share of the vertices that fraction keeps");
-  option("--mesh-separation", settings.harris_mesh.separation,
-         "harris-mesh: least distance in clustering, a share of the diagonal");
-  option("--support-radius-pr", settings.support_radius_pr, "Radius of SHOT and its frame");
-  option("--normals", settings.normals,
-         "mesh: to the side of the faces, of a cloud towards the sensor; origin: all towards the sensor");
-  option("--sensor", settings.sensor, "Where the sensor stood, in mesh units")
-      ->delimiter(',')
-      ->expected(3)
-      ->default_str("0,0,0")
-      ->type_name("X,Y,Z");
-  option("--shot", settings.shot, "Shares between bins: additive, product, or pcl (additive with that library's slip)");
-  option("--matcher", settings.matching.matcher,
-         "exact, or flann (approximate, not reproducible, for very many features)");
-  command.add_flag("--mutual", settings.matching.mutual, "Keep a match only if each side is the nearest of the other")
-      ->group("Matching");
-  option("--threads", settings.threads, "0: as many as there are; results do not depend on it");
-}
-
-void check_usage(const MatchSettings& settings) {
-  try {
-    settings.validate();
-  } catch (const InvalidInput& error) {
-    throw UsageError(error.what());
-  }
-}
-
 void add_match(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("match", "Keypoints, descriptors and their matches: two meshes in, one table out");
   auto settings = std::make_shared<Settings>();
@@ -87,10 +53,12 @@ void add_match(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "The stage report as JSON on standard output (the table then needs -o)");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report in words on standard error");
   add_match_options(*command, settings->match);
+  add_set_option(*command, settings->set);
   command->footer(
       "Examples:\n  corral match model.ply scene.ply -o matches.csv\n"
       "  corral match model.ply scene.ply -v --json -o matches.csv\n"
-      "  corral match model.ply scene.ply --detector harris-mesh --mesh-neighborhood rings --mutual -o matches.csv");
+      "  corral match model.ply scene.ply --detector harris-mesh --set harris-mesh.neighborhood=rings --mutual -o "
+      "matches.csv");
   command->callback([settings, &action] { action = [settings] { return match(*settings); }; });
 }
 

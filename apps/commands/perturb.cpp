@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"

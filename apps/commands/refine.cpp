@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/pair/report_pair.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // corral report: the figures, tables and pictures of some runs.
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
 
 #include <filesystem>
 

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <sstream>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/explain.h"
+#include "apps/pair/match_report.h"
+#include "apps/pair/read_surface.h"
 #include "apps/pair/report_pair.h"
+#include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
+#include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "io/group_file.h"
@@ -23,6 +27,7 @@ struct Settings {
   int repeat = 1;
   std::uint64_t memory_limit = 0;
   MatchSettings match;
+  std::vector<std::string> set;
   bool dense = false, explain = false, json = false, verbose = false;
 };
 
@@ -137,7 +142,8 @@ void explain(PairRun& run, const Mesh& target) {
 PairRun evaluate(const Settings& settings) {
   PairRun run;
   run.methods = method_names(settings.methods);
-  for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, {}));
+  const OptionsByName options = parse_set(settings.set);
+  for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
   if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
   if (!settings.output.empty()) {  // better now than after all the work
@@ -145,7 +151,7 @@ PairRun evaluate(const Settings& settings) {
     check_writable(settings.output + "/run.json");
   }
   Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense);
-  run.pair = match_pair(source, target, settings.match, [&](const std::string& stage) { progress.begin(stage); });
+  run.pair = match_pair(source, target, settings.match, {[&](const std::string& stage) { progress.begin(stage); }});
   if (run.truth) {
     progress.begin("overlap");
     run.truth =
@@ -191,6 +197,11 @@ std::string in_words(const PairRun& run, const Settings& settings) {
 }
 
 int run_pair(Settings settings) {
+  const OptionsByName options = parse_set(settings.set);
+  std::vector<std::string> in_use = settings.match.in_use();
+  for (const std::string& name : method_names(settings.methods)) in_use.push_back(name);
+  require_in_use(options, in_use);
+  settings.match.options = surface_part(options);
   check_usage(settings.match);
   settings.match.inspect = settings.verbose;
   check_threshold(settings.threshold_pr);
@@ -220,7 +231,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors")
       ->type_name("FILE");
-  command->add_option("--methods", settings->methods, "all, or names between commas: " + method_list(","))
+  command->add_option("--methods", settings->methods, "all, or names between commas: " + names_of(groupers(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
@@ -236,6 +247,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);
+  add_set_option(*command, settings->set);
   command->footer(
       "With a truth, the row 'oracle' (all right matches) shows what a perfect grouper would do for the pair, and "
       "'floor'\n"
@@ -245,7 +257,7 @@ void add_run(CLI::App& app, Action& action) {
       "does,\n"
       "'spoiled' if only the fit does, else 'lost'. ADD is the mean error over the whole source in its diameters.\n"
       "Examples:\n  corral run model.ply scene.ply --truth truth.txt --explain\n"
-      "  corral run model.ply scene.ply --methods ransac,gc -o results --json");
+      "  corral run model.ply scene.ply --methods ransac,gc --set ransac.iterations=50000 -o results --json");
   command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });
 }
 

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "io/mesh_file.h"

@@ -2,8 +2,11 @@
 // corral score: precision and recall of a selection, and where the pose behind it leads.
 #include <cmath>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
 #include "apps/pair/report_pair.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
 #include "io/transform_file.h"
@@ -57,11 +60,6 @@ int score(const Settings& settings) {
 }
 
 }  // namespace
-
-void check_threshold(double threshold_pr) {
-  if (!(threshold_pr >= 0) || !std::isfinite(threshold_pr))
-    throw UsageError("--threshold-pr: expected a finite length of at least 0");
-}
 
 void add_score(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("score", "Precision, recall and pose error of a selection against a true pose");

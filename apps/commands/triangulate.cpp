@@ -3,8 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/commands/commands.h"
-#include "apps/runtime/report.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
 #include "kernel/number_text.h"

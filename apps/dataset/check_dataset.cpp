@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "apps/dataset/pair_sweep.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/bounding_box.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/search/coincidence.h"

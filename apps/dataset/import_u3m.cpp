@@ -11,7 +11,7 @@
 #include "apps/align/alignment_files.h"
 #include "apps/dataset/set_folder.h"
 #include "apps/pair/read_surface.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "io/dataset_file.h"
 #include "io/file.h"
 #include "io/mesh_file.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/pair/match_pair.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/scan/visibility.h"

@@ -4,7 +4,8 @@
 #include <filesystem>
 
 #include "apps/dataset/measure_dataset.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/scan/visibility.h"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "apps/runtime/report.h"
 #include "apps/runtime/stopwatch.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/surface/scan/visibility.h"
 #include "kernel/surface/search/diameter.h"
 

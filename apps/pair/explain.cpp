@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/explain.h"
 
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "kernel/number_text.h"
 
 namespace corral {

@@ -1,42 +1,41 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/match_pair.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "apps/runtime/memory.h"
 #include "apps/runtime/stopwatch.h"
 #include "apps/runtime/workers.h"
-#include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/descriptor.h"
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/search/resolution.h"
+#include "kernel/surface/shot.h"
 
 namespace corral {
 namespace {
 
-/// Resolutions that differ by more have no meaningful mean: metres and millimetres, most likely.
-constexpr double kLargestRatio = 20;
+using StageRunner = std::function<void(const std::string& stage, const std::function<void()>& work)>;
+void run_stage(const std::string&, const std::function<void()>& work) { work(); }
 
-/// More than any machine needs; a typing error must not bring it down.
-constexpr int kMostThreads = 256;
-
-/// A positive length, if the rule is one.
-std::optional<double> as_length(const std::string& rule) {
-  const auto value = parse_double(rule);
-  return value && *value > 0 && std::isfinite(*value) ? value : std::nullopt;
-}
-
-Keypoints detect(const Mesh& mesh, double resolution, const MatchSettings& settings, const ParallelFor& parallel) {
-  if (settings.detector == "uniform") return detect_uniform(mesh.vertices, resolution, settings.keypoint_radius_pr);
-  if (settings.detector == "harris-mesh") {
-    HarrisMeshOptions options = settings.harris_mesh;
-    options.radius_pr = settings.keypoint_radius_pr;
-    return detect_harris_mesh(mesh, resolution, options);
-  }
-  return detect_harris(mesh.vertices, resolution, {settings.keypoint_radius_pr}, parallel);
+/// Keypoints -> descriptors and frames.
+SurfaceFeatures describe(const Mesh& mesh, const Points& normals, double resolution, const MatchSettings& settings,
+                         const StageRunner& stage = run_stage) {
+  const ParallelFor parallel = workers(settings.threads);
+  Keypoints keypoints;
+  SurfaceFeatures features;
+  stage("keypoints", [&] { keypoints = settings.configured_detector().detect({mesh, resolution, parallel}); });
+  stage("descriptors", [&] {
+    features.descriptors =
+        settings.configured_descriptor().describe({mesh.vertices, normals, keypoints.vertices, resolution, parallel});
+    if (settings.frames == LocalFrames::None)
+      features.descriptors.frames.clear();
+    else if (!find_descriptor(settings.descriptor).has_frames)
+      add_shot_frames(mesh.vertices, resolution, parse_options<ShotOptions>(settings.options_of("shot"), "shot"),
+                      features.descriptors, parallel);
+  });
+  features.candidates = keypoints.candidates;
+  features.keypoints = static_cast<int>(keypoints.vertices.size());
+  return features;
 }
 
 /// One pair on its way from meshes to matches.
@@ -45,31 +44,50 @@ class Pipeline {
   Pipeline(const MatchSettings& settings, const StageObserver& observer, MatchReport& report)
       : settings_(settings), observer_(observer), report_(report) {}
 
-  /// Returns the normals.
-  Points measure(const Mesh& mesh, const std::string& side, SurfaceReport& report) {
-    mesh.validate(side);
-    report.points = static_cast<int>(mesh.vertices.rows());
-    report.faces = static_cast<int>(mesh.triangles.rows());
-    if (settings_.inspect) stage("topology of the " + side, [&] { report.topology = inspect_topology(mesh); });
-    NormalsAndResolution found;
-    stage("normals and resolution of the " + side, [&] {
-      found = estimate_normals_and_resolution(mesh, normal_options(settings_), workers(settings_.threads));
+  /// A surface with what was measured on it. Normals wait until they are needed where the features may be in a cache.
+  struct Side {
+    const Mesh& mesh;
+    std::string name;
+    SurfaceReport& report;
+    const FeatureCache& cache;
+    Points normals{};
+  };
+
+  void measure(Side& side) {
+    side.mesh.validate(side.name);
+    side.report.points = static_cast<int>(side.mesh.vertices.rows());
+    side.report.faces = static_cast<int>(side.mesh.triangles.rows());
+    if (settings_.inspect)
+      stage("topology of the " + side.name, [&] { side.report.topology = inspect_topology(side.mesh); });
+    stage("normals and resolution of the " + side.name, [&] {
+      if (side.cache) {
+        side.report.resolution = point_resolution(side.mesh.vertices);
+        return;
+      }
+      NormalsAndResolution found =
+          estimate_normals_and_resolution(side.mesh, settings_.normal_options(), workers(settings_.threads));
+      side.report.resolution = found.resolution;
+      side.normals = std::move(found.normals);
     });
-    report.resolution = found.resolution;
-    return std::move(found.normals);
   }
 
-  Descriptors describe(const Mesh& mesh, Points normals, const std::string& side, SurfaceReport& report) {
-    SurfaceFeatures features =
-        describe_surface(mesh, normals, report_.resolution, settings_,
-                         [&](const std::string& name, const auto& work) { stage(name + " of the " + side, work); });
+  Descriptors describe(Side& side) {
+    SurfaceFeatures features;
+    if (side.cache)
+      features =
+          side.cache(report_.resolution, [&] { return describe_surface(side.mesh, report_.resolution, settings_); });
+    else
+      features = corral::describe(
+          side.mesh, side.normals, report_.resolution, settings_,
+          [&](const std::string& name, const auto& work) { stage(name + " of the " + side.name, work); });
+    side.normals = Points();
     const Descriptors& descriptors = features.descriptors;
-    report.candidates = features.candidates;
-    report.keypoints = features.keypoints;
-    report.dropped_small_support = descriptors.dropped_small_support;
-    report.dropped_no_frame = descriptors.dropped_no_frame;
-    report.dropped_no_histogram = descriptors.dropped_no_histogram;
-    report.descriptors = static_cast<int>(descriptors.vertices.size());
+    side.report.candidates = features.candidates;
+    side.report.keypoints = features.keypoints;
+    side.report.dropped_small_support = descriptors.dropped_small_support;
+    side.report.dropped_no_frame = descriptors.dropped_no_frame;
+    side.report.dropped_no_histogram = descriptors.dropped_no_histogram;
+    side.report.descriptors = static_cast<int>(descriptors.vertices.size());
     return std::move(features.descriptors);
   }
 
@@ -92,12 +110,32 @@ class Pipeline {
   MatchReport& report_;
 };
 
-/// Advice on a radius (in the side's own pr) that is far from the usual one.
-std::string radius_hint(const std::string& what, double radius_pr, double usual_pr) {
-  if (radius_pr > usual_pr / 2 && radius_pr < usual_pr * 2) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", radius_pr);
-  return "the " + what + " radius is " + text + " pr of this side, use about " + to_text(usual_pr) + " pr; ";
+std::vector<UsedLength> lengths_of(const MatchSettings& settings) {
+  std::vector<UsedLength> lengths;
+  for (const std::string& name : settings.in_use()) {
+    const std::vector<OptionValue> usual = surface_options({}, name);
+    std::size_t i = 0;
+    for (const OptionValue& option : surface_options(settings, name)) {
+      const OptionValue& default_value = usual[i++];
+      if (option.unit == "pr")
+        lengths.push_back(
+            {name + "." + option.name, parse_double(option.value).value(), parse_double(default_value.value).value()});
+    }
+  }
+  return lengths;
+}
+
+/// Advice on the lengths of one algorithm that, in the side's own pr, are far from the usual ones.
+std::string length_hint(const MatchReport& report, const std::string& algorithm, double scale) {
+  std::string text;
+  for (const UsedLength& length : report.lengths) {
+    const double pr = length.pr * scale;
+    if (length.name.rfind(algorithm + ".", 0) != 0 || (pr > length.usual_pr / 2 && pr < length.usual_pr * 2)) continue;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", pr);
+    text += length.name + " is " + number + " pr of this side, use about " + to_text(length.usual_pr) + " pr; ";
+  }
+  return text;
 }
 
 void add_hints(const MatchReport& report, const MatchSettings& settings, std::vector<std::string>& hints) {
@@ -105,12 +143,11 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
     if (side.descriptors > 0) return;
     const double scale = report.resolution / side.resolution;  // from pr of the pair to the side's own
     if (side.keypoints == 0)
-      hints.push_back("no keypoint on the " + name + ": " +
-                      radius_hint("keypoint", settings.keypoint_radius_pr * scale, 3) + "a flat surface has none");
+      hints.push_back("no keypoint on the " + name + ": " + length_hint(report, settings.detector, scale) +
+                      "a flat surface has none");
     else
-      hints.push_back("no keypoint of the " + name +
-                      " could be described: " + radius_hint("support", settings.support_radius_pr * scale, 15) +
-                      "each needs 10 vertices around it");
+      hints.push_back("no keypoint of the " + name + " could be described: " +
+                      length_hint(report, settings.descriptor, scale) + "each needs enough vertices around it");
   };
   hint(report.source, "source");
   hint(report.target, "target");
@@ -118,63 +155,11 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
     hints.push_back("no match is mutual: the surfaces may share too little, or leave out --mutual");
 }
 
-void expect_one_of(const std::string& field, const std::string& value, const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : "|") + name;
-  if (std::find(names.begin(), names.end(), value) == names.end())
-    throw InvalidInput("match", field, "'" + value + "'", list);
-}
-
 }  // namespace
 
-void MatchSettings::validate() const {
-  if (resolution != "mean" && resolution != "source" && resolution != "target" && !as_length(resolution))
-    throw InvalidInput("match", "--resolution", "'" + resolution + "'",
-                       "mean|source|target or a length above zero in mesh units");
-  expect_one_of("--detector", detector, {"harris", "harris-mesh", "uniform"});
-  expect_one_of("--normals", normals, {"mesh", "origin"});
-  expect_one_of("--shot", shot, {"additive", "pcl", "product"});
-  require_positive("match", "--keypoint-radius-pr", keypoint_radius_pr);
-  require_positive("match", "--support-radius-pr", support_radius_pr);
-  if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
-    throw InvalidInput("match", "--sensor", "not a place", "three finite coordinates x,y,z");
-  if (threads < 0 || threads > kMostThreads)
-    throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
-  harris_mesh.validate();
-  matching.validate();
-}
-
-double pair_resolution(const std::string& rule, double source, double target) {
-  if (rule == "source") return source;
-  if (rule == "target") return target;
-  if (rule == "mean") {
-    const double ratio = std::max(source, target) / std::min(source, target);
-    if (!(ratio <= kLargestRatio))
-      throw InvalidInput("match", "--resolution",
-                         to_text(source) + " on the source and " + to_text(target) + " on the target",
-                         "both in the same unit, or --resolution with the one to use");
-    return (source + target) / 2;
-  }
-  return as_length(rule).value();
-}
-
-NormalOptions normal_options(const MatchSettings& settings) {
-  return {20, settings.normals == "mesh", Eigen::Vector3d(settings.sensor.data())};
-}
-
-SurfaceFeatures describe_surface(const Mesh& mesh, const Points& normals, double resolution,
-                                 const MatchSettings& settings, const StageRunner& stage) {
-  const ParallelFor parallel = workers(settings.threads);
-  Keypoints keypoints;
-  SurfaceFeatures features;
-  stage("keypoints", [&] { keypoints = detect(mesh, resolution, settings, parallel); });
-  stage("descriptors", [&] {
-    features.descriptors = describe_shot(mesh.vertices, normals, keypoints.vertices, resolution,
-                                         {settings.support_radius_pr, 10, settings.shot}, parallel);
-  });
-  features.candidates = keypoints.candidates;
-  features.keypoints = static_cast<int>(keypoints.vertices.size());
-  return features;
+SurfaceFeatures describe_surface(const Mesh& mesh, double resolution, const MatchSettings& settings) {
+  return describe(mesh, estimate_normals(mesh, settings.normal_options(), workers(settings.threads)), resolution,
+                  settings);
 }
 
 CorrespondenceSet match_surfaces(const DescribedSurface& source, const DescribedSurface& target, double resolution,
@@ -184,20 +169,20 @@ CorrespondenceSet match_surfaces(const DescribedSurface& source, const Described
 
 int match_stages(const MatchSettings& settings) { return settings.inspect ? 9 : 7; }
 
-MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings,
-                       const StageObserver& observer) {
+MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettings& settings, const MatchHooks& hooks) {
   settings.validate();
   MatchedPair pair;
   MatchReport& report = pair.report;
-  Pipeline pipeline(settings, observer, report);
-  Points source_normals = pipeline.measure(source, "source", report.source);
-  Points target_normals = pipeline.measure(target, "target", report.target);
+  Pipeline pipeline(settings, hooks.observer, report);
+  Pipeline::Side on_source{source, "source", report.source, hooks.source};
+  Pipeline::Side on_target{target, "target", report.target, hooks.target};
+  pipeline.measure(on_source);
+  pipeline.measure(on_target);
   report.resolution = pair_resolution(settings.resolution, report.source.resolution, report.target.resolution);
-  report.keypoint_radius = settings.keypoint_radius_pr * report.resolution;
-  report.support_radius = settings.support_radius_pr * report.resolution;
-  const Descriptors on_source = pipeline.describe(source, std::move(source_normals), "source", report.source);
-  const Descriptors on_target = pipeline.describe(target, std::move(target_normals), "target", report.target);
-  pair.matches = pipeline.match({source, on_source}, {target, on_target});
+  report.lengths = lengths_of(settings);
+  const Descriptors source_features = pipeline.describe(on_source);
+  const Descriptors target_features = pipeline.describe(on_target);
+  pair.matches = pipeline.match({source, source_features}, {target, target_features});
   report.matches = pair.matches.size();
   add_hints(report, settings, report.hints);
   return pair;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "apps/runtime/text_table.h"
 #include "kernel/number_text.h"
 
 namespace corral {
@@ -122,6 +123,16 @@ std::vector<Json> rows_of(const std::vector<MethodRecord>& records, const std::v
 }
 
 }  // namespace
+
+Json to_json(const GroupingScore& score) {
+  return {{"matches", score.matches},
+          {"selected", score.selected},
+          {"correct", score.correct},
+          {"true_matches", score.true_matches},
+          {"precision", json_or_null(score.precision)},
+          {"recall", json_or_null(score.recall)},
+          {"f1", json_or_null(score.f1)}};
+}
 
 void add_errors(Json& json, const std::string& prefix, const std::optional<PoseErrors>& errors, bool is_judged) {
   std::optional<double> rotation, translation, rmse, mean, add, success_from;

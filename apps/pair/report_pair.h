@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "apps/pair/evaluate_pair.h"
-#include "apps/runtime/report.h"
+#include "apps/runtime/json.h"
 
 namespace corral {
+
+Json to_json(const GroupingScore& score);
 
 /// Appends what a pose is worth against the truth, each key behind the prefix, null where it is undefined:
 /// rotation_error_deg, translation_error_pr, rmse_pr, mean_error_pr, add_share, success_5pr (is_registered),

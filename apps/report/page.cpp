@@ -8,6 +8,7 @@
 #include "apps/report/page_scenes.h"
 #include "apps/report/page_tables.h"
 #include "apps/runtime/embedded_files.h"
+#include "apps/runtime/json.h"
 #include "io/file.h"
 #include "kernel/error.h"
 
@@ -25,9 +26,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 /// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the
 /// same.
-std::string json_in_html(const Json& json) {
-  return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace), "<", "\\u003c");
-}
+std::string json_in_html(const Json& json) { return replaced(compact_json(json), "<", "\\u003c"); }
 std::string script_in_html(const std::string& script) {
   return "<script>\n" + replaced(replaced(script, "</script", "<\\/script"), "<!--", "<\\!--") + "\n</script>\n";
 }

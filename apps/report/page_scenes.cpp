@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "apps/report/figure/method_style.h"
+#include "apps/runtime/json.h"
 #include "apps/runtime/progress.h"
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
@@ -20,8 +21,6 @@
 
 namespace corral {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kMostVertices = 4000;  // of a mesh on the page: its triangles are numbered in 16 bit
 

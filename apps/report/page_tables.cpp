@@ -8,14 +8,13 @@
 #include <map>
 
 #include "apps/report/figure/method_style.h"
+#include "apps/runtime/json.h"
 #include "io/file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string path_in(const RunFolder& run, const std::string& name) {
   return (std::filesystem::path(run.folder) / name).string();
@@ -37,7 +36,7 @@ Json facts_of(const RunFolder& run) {
     Json facts = Json::object();
     for (const auto& [name, value] : manifest.items())
       if (name != "experiments" && name != "pairs")
-        facts[name] = value.dump(-1, ' ', false, Json::error_handler_t::replace).size() > 4000
+        facts[name] = compact_json(value).size() > 4000
                           ? Json(std::to_string(value.size()) + " entries, see manifest.json")
                           : value;
     return facts;

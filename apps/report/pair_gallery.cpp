@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "apps/picture/pair_picture.h"
-#include "apps/runtime/report.h"
 #include "apps/report/figure/method_style.h"
 #include "apps/report/study_figures.h"
+#include "apps/runtime/text_table.h"
 #include "io/mesh_file.h"
 #include "io/toml_file.h"
 #include "io/transform_file.h"

@@ -3,6 +3,7 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "io/file.h"
@@ -143,7 +144,8 @@ std::optional<Descriptors> ContentStore::descriptors(const std::string& key) con
     Descriptors found;
     found.vertices = get_indices(reader);
     found.frames = get_frames(reader);
-    found.features = get_matrix<Eigen::MatrixXd>(reader, kShotSize, true);
+    const int size = reader.count(1);
+    found.features = get_matrix<Eigen::MatrixXd>(reader, std::max(size, 1), true);
     found.dropped_small_support = static_cast<int>(reader.integer());
     found.dropped_no_frame = static_cast<int>(reader.integer());
     found.dropped_no_histogram = static_cast<int>(reader.integer());
@@ -155,6 +157,7 @@ void ContentStore::put(const std::string& key, const Descriptors& descriptors) c
   ByteWriter writer;
   put_list(writer, descriptors.vertices);
   put_frames(writer, descriptors.frames);
+  writer.put(static_cast<std::int64_t>(descriptors.features.rows()));
   writer.put(static_cast<std::int64_t>(descriptors.features.cols()));
   writer.put(descriptors.features.data(), sizeof(double) * static_cast<std::size_t>(descriptors.features.size()));
   writer.put(static_cast<std::int64_t>(descriptors.dropped_small_support));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/correspondence_set.h"
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/descriptors.h"
 
 namespace corral {
 

@@ -6,14 +6,13 @@
 
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/match_pair.h"
 #include "apps/pair/read_surface.h"
 #include "apps/results/run_folder.h"
 #include "apps/runtime/build_info.h"
-#include "apps/runtime/workers.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {
@@ -29,26 +28,28 @@ std::string key_of(const std::vector<std::string>& parts) {
   return content_hash(text);
 }
 
-Descriptors describe(const Mesh& mesh, double resolution, const MatchSettings& settings) {
-  const Points normals = estimate_normals(mesh, normal_options(settings), workers(settings.threads));
-  return describe_surface(mesh, normals, resolution, settings).descriptors;
-}
-
-/// Features that several pairs need, from the store or stored.
-Descriptors shared_descriptors(const Mesh& mesh, const std::string& hash, const MatchSettings& settings,
-                               const ContentStore& store) {
-  const double resolution = parse_double(settings.resolution).value();
-  const std::string key = key_of({"features", hash, matching_text(settings)});
-  if (auto found = store.descriptors(key)) return std::move(*found);
-  Descriptors descriptors = describe(mesh, resolution, settings);
-  store.put(key, descriptors);
-  return descriptors;
-}
-
 /// How many there were to describe.
 int keypoints_of(const Descriptors& descriptors) {
   return static_cast<int>(descriptors.vertices.size()) + descriptors.dropped_small_support +
          descriptors.dropped_no_frame + descriptors.dropped_no_histogram;
+}
+
+/// Keeps the features of a surface that several pairs need in the store.
+FeatureCache feature_cache(const UnitWork& work, const std::string& file) {
+  return [&work, file](double resolution, const std::function<SurfaceFeatures()>& make) {
+    MatchSettings settings = work.unit.matching;
+    settings.resolution = to_text(resolution);  // whatever rule it came from
+    const std::string key = key_of({"features", hash_of(work.inputs, file), matching_text(settings)});
+    SurfaceFeatures features;
+    if (auto found = work.store.descriptors(key)) {
+      features.descriptors = std::move(*found);
+      features.keypoints = features.candidates = keypoints_of(features.descriptors);
+      return features;
+    }
+    features = make();
+    work.store.put(key, features.descriptors);
+    return features;
+  };
 }
 
 /// Causes are in cells of a table.
@@ -195,23 +196,14 @@ std::string unit_key(const WorkUnit& unit, const InputHashes& inputs) {
 
 StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
   const WorkUnit& unit = work.unit;
-  const std::string source_hash = hash_of(work.inputs, unit.pair.source),
-                    target_hash = hash_of(work.inputs, unit.pair.target);
-  const std::string key = key_of({"matches", source_hash, target_hash, matching_text(unit.matching)});
+  const std::string key = key_of({"matches", hash_of(work.inputs, unit.pair.source),
+                                  hash_of(work.inputs, unit.pair.target), matching_text(unit.matching)});
   if (auto found = work.store.matches(key)) return std::move(*found);
-  source.validate("source");
-  target.validate("target");
-  const double resolution =
-      pair_resolution(unit.matching.resolution, point_resolution(source.vertices), point_resolution(target.vertices));
-  MatchSettings settings = unit.matching;
-  settings.resolution = to_text(resolution);  // whatever rule it came from
-  const auto described = [&](const Mesh& mesh, const std::string& hash, bool is_shared) {
-    return is_shared ? shared_descriptors(mesh, hash, settings, work.store) : describe(mesh, resolution, unit.matching);
-  };
-  const Descriptors on_source = described(source, source_hash, unit.shares_source);
-  const Descriptors on_target = described(target, target_hash, unit.shares_target);
-  const StoredMatches made{match_surfaces({source, on_source}, {target, on_target}, resolution, unit.matching),
-                           keypoints_of(on_source)};
+  MatchHooks hooks;
+  if (unit.shares_source) hooks.source = feature_cache(work, unit.pair.source);
+  if (unit.shares_target) hooks.target = feature_cache(work, unit.pair.target);
+  MatchedPair pair = match_pair(source, target, unit.matching, hooks);
+  const StoredMatches made{std::move(pair.matches), pair.report.source.keypoints};
   work.store.put(key, made);
   return made;
 }

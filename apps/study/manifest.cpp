@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "apps/runtime/report.h"
 #include "apps/runtime/build_info.h"
+#include "apps/runtime/json.h"
 #include "grouping/registry.h"
 #include "kernel/error.h"
 
@@ -20,6 +20,8 @@ Json to_json(const Experiment& experiment) {
   for (const StudyLevel& level : info.levels)
     levels.push_back({{"label", level.label}, {"low", level.low}, {"high", level.high}});
   for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.accepted;
+  for (const auto& [name, overrides] : experiment.options)
+    if (!look_up(groupers(), name)) options[name] = overrides;
   for (const std::string& method : info.methods) {
     const auto found = experiment.options.find(method);
     options[method] = corral::to_json(
@@ -38,7 +40,8 @@ Json to_json(const Experiment& experiment) {
           {"least_true_matches", info.least_true_matches},
           {"filter", filters},
           {"matching", corral::to_json(experiment.matching)},
-          {"keypoint_radii_pr", experiment.keypoint_radii_pr},
+          {"varied", experiment.varied},
+          {"varied_values", experiment.varied_values},
           {"options", options},
           {"repeats", experiment.repeats},
           {"seed", experiment.seed},
@@ -90,7 +93,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
 
 /// What two calls must agree on to be the same run.
 std::string hash_of_experiments(const WorkList& list) {
-  std::string text = experiments_json(list).dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = compact_json(experiments_json(list));
   for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
   return content_hash(text);
 }

@@ -25,6 +25,35 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+/// The default options of a grouper, detector or descriptor; null for another name.
+const std::vector<OptionValue>* default_options(const std::string& name) {
+  if (const Grouper* entry = look_up(groupers(), name)) return &entry->options;
+  if (const Detector* entry = look_up(detectors(), name)) return &entry->options;
+  if (const Descriptor* entry = look_up(descriptors(), name)) return &entry->options;
+  return nullptr;
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names = method_names();
+  for (const Detector& entry : detectors()) names.push_back(entry.name);
+  for (const Descriptor& entry : descriptors()) names.push_back(entry.name);
+  return names;
+}
+
+/// "name.option" in two.
+std::pair<std::string, std::string> split(const std::string& option) {
+  const std::size_t dot = option.find('.');
+  return {option.substr(0, dot), option.substr(dot + 1)};
+}
+
+/// Whether an option takes one of several words.
+bool is_choice(const std::string& option) {
+  const auto [name, field] = split(option);
+  for (const OptionValue& each : *default_options(name))
+    if (each.name == field) return each.accepted.find('|') != std::string::npos;
+  return false;
+}
+
 std::string required_text(const TomlTable& table, const std::string& key) {
   const std::string text = table.text(key).value_or("");
   if (text.empty()) table.fail(key, "expected " + key + " = \"...\"");
@@ -38,26 +67,35 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
   return static_cast<int>(value);
 }
 
+[[noreturn]] void fail_unknown(const TomlTable& table, const std::string& key, const std::string& name,
+                               const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  std::string list;
+  for (const std::string& each : known) list += (list.empty() ? "" : ", ") + each;
+  table.fail(key, "nothing is called " + corral::quoted(name) + ", " +
+                      (nearest.empty() ? "expected one of " + list : "did you mean " + corral::quoted(nearest) + "?"));
+}
+
 void check_method(const TomlTable& table, const std::string& key, const std::string& method) {
-  const std::vector<std::string> known = method_names();
-  if (std::find(known.begin(), known.end(), method) != known.end()) return;
-  const std::string nearest = nearest_name(method, known);
-  table.fail(key, "no grouper is called " + corral::quoted(method) +
-                      (nearest.empty() ? ", 'corral groupers' lists them"
-                                       : ", did you mean " + corral::quoted(nearest) + "?"));
+  if (!look_up(groupers(), method)) fail_unknown(table, key, method, method_names());
+}
+
+/// A grouper, detector or descriptor.
+void check_name(const TomlTable& table, const std::string& key, const std::string& name) {
+  if (!default_options(name)) fail_unknown(table, key, name, all_names());
 }
 
 /// Which sweep an attribute asks for. A name that is none of the program's own is a column of pairs.csv.
 Sweep sweep_of(const TomlTable& table, const std::string& attribute) {
-  static const std::map<std::string, Sweep> kOwn = {{"threshold_pr", Sweep::Threshold},
-                                                    {"matches", Sweep::Matches},
-                                                    {"keypoint_radius_pr", Sweep::KeypointRadius},
+  static const std::map<std::string, Sweep> kOwn = {{"threshold_pr", Sweep::Threshold}, {"matches", Sweep::Matches},
+                                                    {"detector", Sweep::Choice},        {"descriptor", Sweep::Choice},
+                                                    {"frames", Sweep::Choice},          {"normals", Sweep::Choice},
                                                     {"table_size", Sweep::TableSize}};
   const auto own = kOwn.find(attribute);
   if (own != kOwn.end()) return own->second;
   const std::size_t dot = attribute.find('.');
   if (dot == std::string::npos) return Sweep::Column;
-  check_method(table, "attribute", attribute.substr(0, dot));
+  check_name(table, "attribute", attribute.substr(0, dot));
   return Sweep::Option;
 }
 
@@ -78,16 +116,34 @@ std::vector<StudyLevel> read_bins(const TomlTable& table) {
   return levels;
 }
 
-std::vector<StudyLevel> read_levels(const TomlTable& table) {
+/// Words, which stand at 0, 1, 2 ..
+std::vector<StudyLevel> read_words(const TomlTable& table) {
+  std::vector<StudyLevel> levels;
+  for (const std::string& word : table.texts("levels")) {
+    const auto place = static_cast<double>(levels.size());
+    levels.push_back({word, place, place});
+  }
+  if (levels.empty()) table.fail("levels", "expected levels = [\"..\", ..]");
+  return levels;
+}
+
+std::vector<StudyLevel> read_numbers(const TomlTable& table) {
   const std::vector<double> values = table.numbers("levels");
   std::vector<StudyLevel> levels = read_bins(table);
   if (values.empty() == levels.empty())
     table.fail(values.empty() ? "levels" : "bins", "expected either levels = [..] or bins = [[low, high], ..]");
   for (const double value : values) levels.push_back({to_text(value), value, value});
+  return levels;
+}
+
+std::vector<StudyLevel> read_levels(const TomlTable& table, const Experiment& experiment) {
+  const bool has_words =
+      experiment.sweep == Sweep::Choice || (experiment.sweep == Sweep::Option && is_choice(experiment.info.attribute));
+  const std::vector<StudyLevel> levels = has_words ? read_words(table) : read_numbers(table);
   for (std::size_t i = 0; i < levels.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (levels[i].label == levels[j].label)
-        table.fail(values.empty() ? "labels" : "levels", levels[i].label + " stands twice");
+        table.fail(table.texts("labels").empty() ? "levels" : "labels", levels[i].label + " stands twice");
   return levels;
 }
 
@@ -98,67 +154,114 @@ std::vector<AttributeFilter> read_filters(const TomlTable& table) {
   return filters;
 }
 
+/// The value of a choice of the matching by its name in [matching] or in an attribute. Throws InvalidInput.
+void set_choice(MatchSettings& matching, const std::string& name, const std::string& value) {
+  if (name == "detector") matching.detector = find_detector(value).name;
+  if (name == "descriptor") matching.descriptor = find_descriptor(value).name;
+  MatchSettings::visit_fields(matching, [&](const OptionField& field, auto& member) {
+    if (field.name == name && !detail::parse_value(value, member))
+      throw InvalidInput("matching", name, "'" + value + "'",
+                         detail::accepted_values<std::decay_t<decltype(member)>>(field));
+  });
+}
+
 void read_matching(const TomlTable& root, Experiment& experiment) {
   const std::optional<TomlTable> table = root.table("matching");
   if (!table) return;
-  table->only({"resolution", "detector", "keypoint_radius_pr", "keypoint_radii_pr", "support_radius_pr", "normals",
-               "shot", "mutual"});
-  MatchSettings& matching = experiment.matching;
+  std::vector<std::string> known = {"resolution", "detector", "descriptor"};
+  for (const OptionValue& field : describe_options(experiment.matching)) known.push_back(field.name);
+  table->only(known);
   experiment.resolution = table->scalar_text("resolution");
-  matching.resolution = experiment.resolution.value_or(matching.resolution);
-  matching.detector = table->text("detector").value_or(matching.detector);
-  matching.keypoint_radius_pr = table->number("keypoint_radius_pr").value_or(matching.keypoint_radius_pr);
-  matching.support_radius_pr = table->number("support_radius_pr").value_or(matching.support_radius_pr);
-  matching.normals = table->text("normals").value_or(matching.normals);
-  matching.shot = table->text("shot").value_or(matching.shot);
-  matching.matching.mutual = table->flag("mutual").value_or(matching.matching.mutual);
-  experiment.keypoint_radii_pr = table->numbers("keypoint_radii_pr");
-  for (const double radius : experiment.keypoint_radii_pr)
-    if (!(radius > 0)) table->fail("keypoint_radii_pr", "expected lengths above zero");
-  if (!experiment.keypoint_radii_pr.empty() && experiment.sweep != Sweep::Matches)
-    table->fail("keypoint_radii_pr", "is for attribute = \"matches\" only, expected keypoint_radius_pr");
-  try {
-    matching.validate();
-  } catch (const InvalidInput& error) {
-    root.fail("matching", error.what());
+  experiment.matching.resolution = experiment.resolution.value_or(experiment.matching.resolution);
+  for (const std::string& name : known) {
+    const auto value = table->scalar_text(name);
+    if (name == "resolution" || !value) continue;
+    try {
+      set_choice(experiment.matching, name, *value);
+    } catch (const InvalidInput& error) {
+      table->fail(name, error.what());
+    }
   }
 }
 
 void read_options(const TomlTable& root, Experiment& experiment) {
   const std::optional<TomlTable> table = root.table("options");
   if (!table) return;
-  for (const std::string& method : table->keys()) {
-    check_method(*table, method, method);
-    const TomlTable options = table->table(method).value();
-    for (const std::string& name : options.keys())
-      if (name == "seed")
-        options.fail(name, "expected the key seed of the experiment, from which that of every pair is derived");
-      else if (const auto value = options.scalar_text(name))
-        experiment.options[method][name] = *value;
+  for (const std::string& name : table->keys()) {
+    check_name(*table, name, name);
+    const TomlTable options = table->table(name).value();
+    for (const std::string& option : options.keys())
+      if (option == "seed")
+        options.fail(option, "expected the key seed of the experiment, from which that of every pair is derived");
+      else if (const auto value = options.scalar_text(option))
+        experiment.options[name][option] = *value;
   }
 }
 
-/// Everything that only the groupers can judge, before any work is done.
+/// [vary.harris] radius_pr = [..]
+void read_varied(const TomlTable& root, Experiment& experiment) {
+  const std::optional<TomlTable> table = root.table("vary");
+  if (!table) return;
+  if (experiment.sweep != Sweep::Matches) root.fail("vary", "is for attribute = \"matches\" only");
+  for (const std::string& name : table->keys())
+    for (const std::string& option : table->table(name).value().keys()) {
+      if (!experiment.varied.empty()) table->fail(name, "expected one option to vary");
+      if (!look_up(detectors(), name) && !look_up(descriptors(), name))
+        table->fail(name, "expected the name of a detector or a descriptor");
+      experiment.varied = name + "." + option;
+      experiment.varied_values = table->table(name)->numbers(option);
+    }
+  if (experiment.varied_values.empty()) root.fail("vary", "expected [vary.NAME] with an option = [..]");
+}
+
+/// Whether something takes part in the experiment.
+bool is_in_use(const Experiment& experiment, const std::string& name) {
+  const std::vector<std::string>& methods = experiment.info.methods;
+  if (std::find(methods.begin(), methods.end(), name) != methods.end()) return true;
+  return std::any_of(experiment.info.levels.begin(), experiment.info.levels.end(), [&](const StudyLevel& level) {
+    const std::vector<std::string> used = matching_at(experiment, level).in_use();
+    return std::find(used.begin(), used.end(), name) != used.end();
+  });
+}
+
+/// The options that the experiment gives must be accepted by what takes them, at every level. Throws InvalidInput.
+void check_options(const Experiment& experiment) {
+  for (const auto& [name, overrides] : experiment.options)
+    if (!is_in_use(experiment, name))
+      throw InvalidInput(experiment.info.name, "an option", "that of '" + name + "', which is not in use",
+                         "those of its groupers, detectors and descriptors");
+  for (const StudyLevel& level : experiment.info.levels) {
+    for (const std::string& method : experiment.info.methods)
+      find_grouper(method).configure(options_at(experiment, method, level));
+    const MatchSettings matching = matching_at(experiment, level);
+    matching.validate();
+    for (const double value : experiment.varied_values)
+      with_option(matching, experiment.varied, to_text(value)).validate();
+  }
+}
+
+/// Everything that can be judged before any work is done.
 void check_experiment(const TomlTable& table, const Experiment& experiment) {
   const ExperimentInfo& info = experiment.info;
-  const bool is_positive_sweep = experiment.sweep != Sweep::Column && experiment.sweep != Sweep::Option;
+  const bool is_positive_sweep = experiment.sweep == Sweep::Threshold || experiment.sweep == Sweep::Matches ||
+                                 experiment.sweep == Sweep::TableSize;
   const bool is_value_sweep = experiment.sweep != Sweep::Column && experiment.sweep != Sweep::Matches;
   for (const StudyLevel& level : info.levels) {
     if (is_value_sweep && level.low != level.high) table.fail("bins", info.attribute + " wants levels = [..]");
     if (is_positive_sweep && !(level.high > 0)) table.fail("levels", "expected numbers above zero");
     if (experiment.sweep == Sweep::TableSize && !(level.low == std::floor(level.low) && level.low <= 1e9))
       table.fail("levels", "found " + level.label + ", expected whole numbers of rows");
-    for (const std::string& method : info.methods) try {
-        find_grouper(method).configure(method_options(experiment, method, level));
-      } catch (const InvalidInput& error) {
-        table.fail(experiment.sweep == Sweep::Option ? "attribute" : "options", error.what());
-      }
   }
-  if (experiment.sweep == Sweep::Option) {
-    const std::string method = info.attribute.substr(0, info.attribute.find('.'));
-    if (std::find(info.methods.begin(), info.methods.end(), method) == info.methods.end())
-      table.fail("attribute", "sweeps an option of " + method + ", which is not among the groupers");
+  try {
+    check_options(experiment);
+  } catch (const InvalidInput& error) {
+    const bool is_swept = experiment.sweep == Sweep::Option || experiment.sweep == Sweep::Choice;
+    table.fail(is_swept ? "levels" : experiment.varied.empty() ? "options" : "vary", error.what());
   }
+  if (experiment.sweep == Sweep::Option && !is_in_use(experiment, split(info.attribute).first))
+    table.fail("attribute", "sweeps an option of " + split(info.attribute).first + ", which is not in use");
+  if (!experiment.varied.empty() && !is_in_use(experiment, split(experiment.varied).first))
+    table.fail("vary", experiment.varied + " is an option of what is not in use");
 }
 
 }  // namespace
@@ -167,20 +270,48 @@ std::string bin_label(double low, double high, bool is_last) {
   return "[" + to_text(low) + "," + to_text(high) + (is_last ? "]" : ")");
 }
 
-OptionOverrides method_options(const Experiment& experiment, const std::string& method, const StudyLevel& level) {
-  const auto found = experiment.options.find(method);
+OptionOverrides options_at(const Experiment& experiment, const std::string& name, const StudyLevel& level) {
+  const auto found = experiment.options.find(name);
   OptionOverrides options = found == experiment.options.end() ? OptionOverrides() : found->second;
-  const std::string prefix = method + ".";
-  if (experiment.sweep == Sweep::Option && experiment.info.attribute.rfind(prefix, 0) == 0)
-    options[experiment.info.attribute.substr(prefix.size())] = to_text(level.low);
+  if (experiment.sweep != Sweep::Option) return options;
+  const auto [swept, option] = split(experiment.info.attribute);
+  if (swept == name) options[option] = level.label;
   return options;
+}
+
+MatchSettings matching_at(const Experiment& experiment, const StudyLevel& level) {
+  MatchSettings matching = experiment.matching;
+  if (experiment.sweep == Sweep::Choice) set_choice(matching, experiment.info.attribute, level.label);
+  for (const std::string& name : matching.in_use()) {
+    const OptionOverrides options = options_at(experiment, name, level);
+    if (!options.empty()) matching.options[name] = options;
+  }
+  return matching;
+}
+
+MatchSettings with_option(MatchSettings matching, const std::string& option, const std::string& value) {
+  const auto [name, field] = split(option);
+  matching.options[name][field] = value;
+  return matching;
+}
+
+void override_options(Experiment& experiment, const OptionsByName& options) {
+  for (const auto& [name, overrides] : options)
+    for (const auto& [option, value] : overrides) {
+      const std::string full = name + "." + option;
+      if (full == experiment.info.attribute || full == experiment.varied)
+        throw InvalidInput("--set", full, "swept by the experiment " + experiment.info.name, "another option");
+      if (option == "seed") throw InvalidInput("--set", full, value, "the key seed of the experiment");
+      experiment.options[name][option] = value;
+    }
+  check_options(experiment);
 }
 
 Experiment parse_experiment(const std::string& path, const std::string& text) {
   const TomlTable table = TomlTable::parse(path, text);
   table.only({"name",    "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
               "bins",    "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
-              "repeats", "seed",   "dense",  "tables"});
+              "repeats", "seed",   "dense",  "tables",   "vary"});
   if (table.text("preset").value_or("paper") != "paper")
     table.fail("preset", "expected \"paper\": every option at its default, the values of the paper's Table 1");
   Experiment experiment;
@@ -194,7 +325,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   info.attribute = required_text(table, "attribute");
   info.axis = table.text("axis").value_or(info.attribute);
   experiment.sweep = sweep_of(table, info.attribute);
-  info.levels = read_levels(table);
+  info.levels = read_levels(table, experiment);
   info.methods = table.texts("groupers");
   if (info.methods.empty()) info.methods = method_names();
   for (std::size_t i = 0; i < info.methods.size(); ++i) {
@@ -212,6 +343,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   experiment.filters = read_filters(table);
   read_matching(table, experiment);
   read_options(table, experiment);
+  read_varied(table, experiment);
   check_experiment(table, experiment);
   return experiment;
 }

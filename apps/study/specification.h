@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/pair/match_pair.h"
+#include "apps/pair/match_settings.h"
 #include "apps/results/run_folder.h"
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral {
 
@@ -21,12 +21,12 @@ struct AttributeFilter {
 
 /// What the levels of an experiment are levels of.
 enum class Sweep {
-  Column,          ///< a column of pairs.csv: each level has pairs of its own
-  Threshold,       ///< threshold_pr: the same answers, scored anew
-  Matches,         ///< matches: how many there turned out to be, over several keypoint radii
-  KeypointRadius,  ///< keypoint_radius_pr
-  Option,          ///< method.option
-  TableSize,       ///< table_size: the time of groupers on tables of so many rows
+  Column,     ///< a column of pairs.csv: each level has pairs of its own
+  Threshold,  ///< threshold_pr: the same answers, scored anew
+  Matches,    ///< matches: how many there turned out to be, over the values of a varied option
+  Choice,     ///< a choice of the matching: detector, descriptor, frames or normals
+  Option,     ///< name.option of a grouper, detector or descriptor
+  TableSize,  ///< table_size: the time of groupers on tables of so many rows
 };
 
 /// One experiment: a file such as paper/experiments/noise.toml, whose keys paper/README.md explains.
@@ -34,11 +34,12 @@ struct Experiment {
   ExperimentInfo info;
   Sweep sweep = Sweep::Column;
   std::vector<AttributeFilter> filters;
-  MatchSettings matching;                          ///< its resolution holds if `resolution` is given
-  std::optional<std::string> resolution;           ///< else that of the data set
-  std::vector<double> keypoint_radii_pr;           ///< of Sweep::Matches
-  std::map<std::string, OptionOverrides> options;  ///< by method, beside the defaults (the paper's)
-  int repeats = 1;                                 ///< of methods that draw; of all methods for times
+  MatchSettings matching;                 ///< its resolution holds if `resolution` is given; without options
+  std::optional<std::string> resolution;  ///< else that of the data set
+  OptionsByName options;                  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)
+  std::string varied;                     ///< of Sweep::Matches: "harris.radius_pr"; empty if there is none
+  std::vector<double> varied_values;
+  int repeats = 1;  ///< of methods that draw; of all methods for times
   std::uint64_t seed = 1;
   bool dense = false;  ///< lay the surfaces on each other too
   int tables = 1;      ///< of Sweep::TableSize: pairs whose tables are timed
@@ -53,8 +54,17 @@ Experiment parse_experiment(const std::string& path, const std::string& text);
 /// The names of the experiments of paper/experiments/, sorted.
 std::vector<std::string> built_in_experiments();
 
-/// The options that a method runs with in the experiment at a level, seeds left out.
-OptionOverrides method_options(const Experiment& experiment, const std::string& method, const StudyLevel& level);
+/// The options that a grouper, detector or descriptor has in the experiment at a level, seeds left out.
+OptionOverrides options_at(const Experiment& experiment, const std::string& name, const StudyLevel& level);
+
+/// How pairs are matched at a level: with the options of what is in use there.
+MatchSettings matching_at(const Experiment& experiment, const StudyLevel& level);
+
+/// The same with another value of an option "name.option" of a detector or descriptor in use.
+MatchSettings with_option(MatchSettings matching, const std::string& option, const std::string& value);
+
+/// Changes options of an experiment as --set does. Throws InvalidInput for what the experiment sweeps or does not accept.
+void override_options(Experiment& experiment, const OptionsByName& options);
 
 /// "[65,70)" for an interval, "[90,95]" for the last.
 std::string bin_label(double low, double high, bool is_last);

@@ -122,9 +122,9 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
         }
     }
   if (records.empty())
-    throw IoError(
-        settings.run, "",
-        "no pair has as many matches as the smallest size, expected smaller levels or a smaller keypoint_radius_pr");
+    throw IoError(settings.run, "",
+                  "no pair has as many matches as the smallest size, expected smaller levels or a smaller radius_pr of "
+                  "its detector");
   const std::vector<TimeRow> rows = time_rows(experiment.info, records);
   const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
   write_files({{(folder / "records.csv").string(), records_text(records)},

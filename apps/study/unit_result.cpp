@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The answer of a unit as JSON: numbers read back as the same doubles.
-#include <nlohmann/json.hpp>
-
 #include "apps/results/measures.h"
+#include "apps/runtime/json.h"
 #include "apps/study/evaluate_unit.h"
 #include "kernel/error.h"
 
 namespace corral {
 namespace {
-
-using Json = nlohmann::json;
-
-template <class Value>
-Json json_of(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 std::optional<double> number_of(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional<double>(json.get<double>());
@@ -35,7 +27,7 @@ std::vector<int> counts_of(const Json& json) {
 
 Json to_json(const PoseScores& scores) {
   Json json = Json::array();
-  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_of(scores.*measure.score));
+  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_or_null(scores.*measure.score));
   return json;
 }
 
@@ -47,9 +39,13 @@ PoseScores pose_scores_of(const Json& json) {
 }
 
 Json to_json(const TaskResult& task) {
-  return {{"status", to_text(task.status)},   {"selected", json_of(task.selected)}, {"correct", task.correct},
-          {"initial", to_json(task.initial)}, {"refined", to_json(task.refined)},   {"dense", to_json(task.dense)},
-          {"time_ms", json_of(task.time_ms)}};
+  return {{"status", to_text(task.status)},
+          {"selected", json_or_null(task.selected)},
+          {"correct", task.correct},
+          {"initial", to_json(task.initial)},
+          {"refined", to_json(task.refined)},
+          {"dense", to_json(task.dense)},
+          {"time_ms", json_or_null(task.time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
@@ -89,7 +85,7 @@ std::string unit_result_text(const UnitResult& result) {
   Json tasks = Json::array(), oracles = Json::array(), frames = Json::array();
   for (const TaskResult& task : result.tasks) tasks.push_back(to_json(task));
   for (const TaskResult& oracle : result.oracles) oracles.push_back(to_json(oracle));
-  for (const auto& share : result.frame_share) frames.push_back(json_of(share));
+  for (const auto& share : result.frame_share) frames.push_back(json_or_null(share));
   return Json{{"failure", result.failure},
               {"resolution", result.resolution},
               {"source_points", result.source_points},

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <tuple>
 
-#include "apps/runtime/report.h"
 #include "apps/study/content_store.h"
 #include "grouping/registry.h"
 #include "io/line_reader.h"
@@ -66,16 +65,18 @@ bool draws(const std::string& method) {
 std::string setting_label(const Experiment& experiment, const WorkUnit& unit, const StudyLevel& level) {
   std::string text;
   for (const Grouper& grouper : groupers())
-    for (const auto& [name, value] : method_options(experiment, grouper.name, level))
+    for (const auto& [name, value] : options_at(experiment, grouper.name, level))
       text += grouper.name + "." + name + "=" + value + "\n";
-  MatchSettings defaults;
-  defaults.resolution = unit.matching.resolution;
-  defaults.keypoint_radius_pr = unit.matching.keypoint_radius_pr;
+  const MatchSettings& matching = unit.matching;
+  const OptionValue length = keypoint_length(matching);
+  MatchSettings usual;
+  usual.resolution = matching.resolution;
   const bool is_usual =
-      text.empty() && experiment.seed == Experiment().seed && matching_text(unit.matching) == matching_text(defaults);
-  const std::string label = to_text(unit.matching.keypoint_radius_pr) + "pr";
-  if (is_usual) return label;
-  return label + "-" + content_hash(text + std::to_string(experiment.seed) + matching_text(unit.matching)).substr(0, 8);
+      text.empty() && experiment.seed == Experiment().seed && matching.detector == usual.detector &&
+      matching_text(matching) == matching_text(with_option(usual, usual.detector + "." + length.name, length.value));
+  if (is_usual) return length.value + "pr";
+  return matching.detector + "-" + matching.descriptor + "-" +
+         content_hash(text + std::to_string(experiment.seed) + matching_text(matching)).substr(0, 8);
 }
 
 /// Collects units so that what several experiments need is there once.
@@ -108,7 +109,7 @@ class Collector {
   }
 
  private:
-  using UnitKey = std::tuple<std::string, int, double, std::string>;  // set, pair, radius, all settings
+  using UnitKey = std::tuple<std::string, int, double, std::string>;  // set, pair, keypoint length, all settings
 
   /// The features of a mesh depend on the pr of its pair: under the rule mean, every pair has its own.
   void mark_shared() {
@@ -164,31 +165,31 @@ class Collector {
           attribute_number(dataset, dataset.pairs[static_cast<std::size_t>(pair)], experiment.info.attribute);
       const int level = value ? level_of(levels, *value) : -1;
       if (level >= 0)
-        add_sample({index, 0, level, value, experiment.info.threshold_pr, "", {}}, dataset, pair, experiment.matching);
+        add_sample({index, 0, level, value, experiment.info.threshold_pr, "", {}}, dataset, pair,
+                   matching_at(experiment, levels[static_cast<std::size_t>(level)]));
       return;
     }
-    MatchSettings matching = experiment.matching;
     if (experiment.sweep == Sweep::Matches || experiment.sweep == Sweep::TableSize) {
-      std::vector<double> radii = experiment.keypoint_radii_pr;
-      if (radii.empty()) radii = {matching.keypoint_radius_pr};
-      for (const double radius : radii) {
-        matching.keypoint_radius_pr = radius;
-        add_sample({index, 0, -1, std::nullopt, experiment.info.threshold_pr, "", {}}, dataset, pair, matching);
-      }
+      const MatchSettings matching = matching_at(experiment, levels.front());
+      const auto add = [&](const MatchSettings& settings) {
+        add_sample({index, 0, -1, std::nullopt, experiment.info.threshold_pr, "", {}}, dataset, pair, settings);
+      };
+      for (const double value : experiment.varied_values) add(with_option(matching, experiment.varied, to_text(value)));
+      if (experiment.varied.empty()) add(matching);
       return;
     }
     for (std::size_t level = 0; level < levels.size(); ++level) {
       StudySample sample{index, 0, static_cast<int>(level), levels[level].low, experiment.info.threshold_pr, "", {}};
       if (experiment.sweep == Sweep::Threshold) sample.threshold_pr = levels[level].low;
-      if (experiment.sweep == Sweep::KeypointRadius) matching.keypoint_radius_pr = levels[level].low;
-      add_sample(std::move(sample), dataset, pair, matching);
+      add_sample(std::move(sample), dataset, pair, matching_at(experiment, levels[level]));
     }
   }
 
   void add_sample(StudySample sample, const Dataset& dataset, int pair, const MatchSettings& matching) {
     const Experiment& experiment = list_.experiments[static_cast<std::size_t>(sample.experiment)];
     const auto [place, is_new] = units_.try_emplace(
-        UnitKey{dataset.name, pair, matching.keypoint_radius_pr, matching_text(matching)}, list_.units.size());
+        UnitKey{dataset.name, pair, parse_double(keypoint_length(matching).value).value_or(0), matching_text(matching)},
+        list_.units.size());
     sample.unit = place->second;
     if (is_new) {
       DatasetPair files = dataset.pairs[static_cast<std::size_t>(pair)];
@@ -215,7 +216,7 @@ class Collector {
     const bool is_random = draws(method);
     std::vector<GroupingTask> tasks;
     for (int repeat = 0; repeat < (is_random ? experiment.repeats : 1); ++repeat) {
-      tasks.push_back({method, method_options(experiment, method, level), repeat});
+      tasks.push_back({method, options_at(experiment, method, level), repeat});
       if (is_random)
         tasks.back().options["seed"] =
             std::to_string(derive_seed(experiment.seed, pair + "/" + method + "/" + std::to_string(repeat)));
@@ -255,23 +256,20 @@ int level_of(const std::vector<StudyLevel>& levels, double value) {
   return -1;
 }
 
-std::string matching_text(const MatchSettings& matching) {
-  return to_json(matching).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string matching_text(const MatchSettings& matching) { return compact_json(to_json(matching)); }
 
 std::string unit_text(const WorkUnit& unit) {
   Json tasks = Json::array(), selections = Json::object();
   for (const GroupingTask& task : unit.tasks)
     tasks.push_back({{"method", task.method}, {"options", task.options}, {"repeat", task.repeat}});
   for (const auto& [file, shown] : unit.selections) selections[file] = shown;
-  return Json{{"dataset", unit.dataset},
-              {"pair", unit.pair.name},
-              {"matching", to_json(unit.matching)},
-              {"tasks", tasks},
-              {"thresholds_pr", unit.thresholds_pr},
-              {"dense", unit.dense},
-              {"selections", selections}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return compact_json({{"dataset", unit.dataset},
+                       {"pair", unit.pair.name},
+                       {"matching", to_json(unit.matching)},
+                       {"tasks", tasks},
+                       {"thresholds_pr", unit.thresholds_pr},
+                       {"dense", unit.dense},
+                       {"selections", selections}});
 }
 
 }  // namespace corral

@@ -12,20 +12,14 @@ namespace {
 
 NearestFeatures find(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target, const MatchingOptions& options,
                      const ParallelFor& parallel) {
-  return options.matcher == "flann" ? find_two_nearest_with_flann(source, target)
-                                    : find_two_nearest(source, target, parallel);
+  return options.matcher == Matcher::Flann ? find_two_nearest_with_flann(source, target)
+                                           : find_two_nearest(source, target, parallel);
 }
 
 }  // namespace
 
-void MatchingOptions::validate() const {
-  if (matcher != "exact" && matcher != "flann")
-    throw InvalidInput("match_features", "matcher", "'" + matcher + "'", "exact|flann");
-}
-
 FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                               const MatchingOptions& options, const ParallelFor& parallel) {
-  options.validate();
   FeatureMatches matches;
   if (source.cols() == 0 || target.cols() == 0) return matches;
   const NearestFeatures found = find(source, target, options, parallel);
@@ -49,6 +43,7 @@ CorrespondenceSet make_correspondences(const DescribedSurface& source, const Des
                                        double resolution, const MatchingOptions& options, const ParallelFor& parallel) {
   const FeatureMatches found =
       match_features(source.descriptors.features, target.descriptors.features, options, parallel);
+  const bool has_frames = !source.descriptors.frames.empty() && !target.descriptors.frames.empty();
   CorrespondenceSet matches;
   matches.resolution = resolution;
   matches.source_centroid = vertex_centroid(source.mesh);
@@ -58,6 +53,7 @@ CorrespondenceSet make_correspondences(const DescribedSurface& source, const Des
     const auto i = static_cast<std::size_t>(found.source[row]), j = static_cast<std::size_t>(found.nearest[row]);
     matches.source_keypoints.push_back(source.descriptors.vertices[i]);
     matches.target_keypoints.push_back(target.descriptors.vertices[j]);
+    if (!has_frames) continue;
     matches.source_frames.push_back(source.descriptors.frames[i]);
     matches.target_frames.push_back(target.descriptors.frames[j]);
   }

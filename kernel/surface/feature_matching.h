@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
+#include <array>
 
 #include "kernel/correspondence_set.h"
+#include "kernel/options.h"
 #include "kernel/parallel.h"
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/descriptors.h"
 #include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 
-struct MatchingOptions {
-  std::string matcher = "exact";  ///< exact | flann: randomised trees, faster for very many features
-  bool mutual = false;            ///< keep a match only if each side is the nearest of the other
+/// How the nearest features are found.
+enum class Matcher { Exact, Flann };
+constexpr std::array<const char*, 2> choice_names(Matcher) { return {"exact", "flann"}; }
 
-  /// Throws InvalidInput.
-  void validate() const;
+struct MatchingOptions {
+  Matcher matcher = Matcher::Exact;
+  bool mutual = false;
+
+  template <class Self, class Visitor>
+  static void visit_fields(Self& self, Visitor&& visit) {
+    visit(OptionField{"matcher", "", "exact", "flann: approximate, not reproducible, for very many features"},
+          self.matcher);
+    visit(OptionField{"mutual", "", "false", "keep a match only if each side is the nearest of the other"},
+          self.mutual);
+  }
 };
 
 /// The two nearest target features of source features.
@@ -29,7 +39,7 @@ struct FeatureMatches {
 /// L2 matching of the columns of D x N and D x M. `exact`: ties go to the lower target column, and any number of threads
 /// gives the same bits. `flann` is approximate and **not reproducible**: its trees take their seeds from the system; the
 /// distances to what it finds are exact. Nothing is returned if either side is empty.
-/// Throws    InvalidInput for a matcher that is not above, or a feature that is not finite.
+/// Throws    InvalidInput for a feature that is not finite.
 FeatureMatches match_features(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                               const MatchingOptions& options = {}, const ParallelFor& parallel = one_by_one);
 

@@ -73,7 +73,7 @@ double response_of(std::vector<Eigen::Vector3d>& places, double k) {
 }
 
 void check(const Mesh& mesh, const HarrisMeshOptions& options) {
-  options.validate();
+  validate_options(options, kWho);
   if (mesh.triangles.rows() == 0)
     throw InvalidInput(kWho, "number of faces", "0",
                        "at least 1: harris-mesh needs the faces of a mesh (the default detector takes a point cloud)");
@@ -83,9 +83,17 @@ void check(const Mesh& mesh, const HarrisMeshOptions& options) {
 Eigen::VectorXd response_along(const Mesh& mesh, const std::vector<Indices>& rings, double resolution,
                                const HarrisMeshOptions& options) {
   Reach reach;
-  if (options.neighborhood == "ball") reach.ball_radius = options.radius_pr * resolution;
-  if (options.neighborhood == "rings") reach.most_rings = options.rings;
-  if (options.neighborhood == "adaptive") reach.longest_path = options.extent * bounding_box(mesh.vertices).diagonal();
+  switch (options.neighborhood) {
+    case MeshNeighborhood::Ball:
+      reach.ball_radius = options.radius_pr * resolution;
+      break;
+    case MeshNeighborhood::Rings:
+      reach.most_rings = options.rings;
+      break;
+    case MeshNeighborhood::Adaptive:
+      reach.longest_path = options.extent * bounding_box(mesh.vertices).diagonal();
+      break;
+  }
   Surroundings surroundings(mesh, rings, reach);
   Eigen::VectorXd response = Eigen::VectorXd::Constant(mesh.vertices.rows(), kNone);
   std::size_t total = 0;
@@ -96,7 +104,8 @@ Eigen::VectorXd response_along(const Mesh& mesh, const std::vector<Indices>& rin
     if (total > kLargestMeanNeighborhood * rings.size())
       throw InvalidInput(
           kWho, "neighborhood",
-          options.neighborhood + " of over " + std::to_string(kLargestMeanNeighborhood) + " vertices on average",
+          choice_text(options.neighborhood) + " of over " + std::to_string(kLargestMeanNeighborhood) +
+              " vertices on average",
           "a smaller one: about 30 are usual (is the resolution in the unit of this mesh, and does no far outlier "
           "widen its bounding box?)");
     response(vertex) = response_of(places, options.k);
@@ -134,7 +143,7 @@ Keypoints select_along(const Mesh& mesh, const std::vector<Indices>& rings, cons
   keypoints.candidates = static_cast<int>(chosen.size());
 
   std::stable_sort(chosen.begin(), chosen.end(), [&](int a, int b) { return response(a) > response(b); });
-  if (options.selection == "clustering") {
+  if (options.selection == MeshSelection::Clustering) {
     chosen = spread(mesh.vertices, chosen, options.separation * bounding_box(mesh.vertices).diagonal());
   } else {
     const auto wanted = std::llround(options.fraction * static_cast<double>(rings.size()));
@@ -145,20 +154,6 @@ Keypoints select_along(const Mesh& mesh, const std::vector<Indices>& rings, cons
 }
 
 }  // namespace
-
-void HarrisMeshOptions::validate() const {
-  if (neighborhood != "rings" && neighborhood != "ball" && neighborhood != "adaptive")
-    throw InvalidInput(kWho, "neighborhood", neighborhood, "rings, ball or adaptive");
-  if (selection != "fraction" && selection != "clustering")
-    throw InvalidInput(kWho, "selection", selection, "fraction or clustering");
-  if (rings < 1) throw InvalidInput(kWho, "rings", std::to_string(rings), "at least 1");
-  require_positive(kWho, "radius_pr", radius_pr);
-  require_positive(kWho, "extent", extent);
-  require_positive(kWho, "separation", separation);
-  if (!(fraction > 0) || !(fraction <= 1)) throw InvalidInput(kWho, "fraction", fraction, "above 0 and at most 1");
-  // From 1/4 on no response is above zero: 4 det never exceeds the squared trace.
-  if (!(k >= 0) || !(k < 0.25)) throw InvalidInput(kWho, "k", k, "at least 0 and below 0.25");
-}
 
 Eigen::VectorXd harris_mesh_response(const Mesh& mesh, double resolution, const HarrisMeshOptions& options) {
   require_positive(kWho, "resolution", resolution);

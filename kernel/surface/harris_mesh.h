@@ -1,25 +1,43 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
+#include <array>
 
+#include "kernel/options.h"
 #include "kernel/surface/keypoints.h"
 #include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
 
-struct HarrisMeshOptions {
-  std::string neighborhood = "adaptive";  ///< rings | ball | adaptive
-  int rings = 2;                          ///< of `rings`: edges between a vertex and the rim of its neighbourhood
-  double radius_pr = 3;                   ///< of `ball`
-  double extent = 0.01;                   ///< of `adaptive`: share of the bounding-box diagonal
-  std::string selection = "fraction";     ///< fraction | clustering
-  double fraction = 0.01;                 ///< of `fraction`: share of the vertices
-  double separation = 0.01;               ///< of `clustering`: share of the bounding-box diagonal
-  double k = 0.04;                        ///< weight of the squared trace, in [0, 0.25)
+/// Which vertices the quadratic of a vertex is fitted to.
+enum class MeshNeighborhood { Adaptive, Rings, Ball };
+constexpr std::array<const char*, 3> choice_names(MeshNeighborhood) { return {"adaptive", "rings", "ball"}; }
 
-  /// Throws InvalidInput for a name that is not above or a number out of range.
-  void validate() const;
+/// Which candidates become keypoints.
+enum class MeshSelection { Fraction, Clustering };
+constexpr std::array<const char*, 2> choice_names(MeshSelection) { return {"fraction", "clustering"}; }
+
+struct HarrisMeshOptions {
+  MeshNeighborhood neighborhood = MeshNeighborhood::Adaptive;
+  int rings = 2;
+  double radius_pr = 3, extent = 0.01;
+  MeshSelection selection = MeshSelection::Fraction;
+  double fraction = 0.01, separation = 0.01, k = 0.04;
+
+  template <class Self, class Visitor>
+  static void visit_fields(Self& self, Visitor&& visit) {
+    visit(OptionField{"neighborhood", "", "", "what the quadratic of a vertex is fitted to"}, self.neighborhood);
+    visit(
+        OptionField{"rings", "", "", "of rings: edges between a vertex and the rim of its neighbourhood", at_least(1)},
+        self.rings);
+    visit(OptionField{"radius_pr", "pr", "", "of ball: its radius", above(0)}, self.radius_pr);
+    visit(OptionField{"extent", "", "", "of adaptive: share of the bounding-box diagonal", above(0)}, self.extent);
+    visit(OptionField{"selection", "", "", "which candidates become keypoints"}, self.selection);
+    visit(OptionField{"fraction", "", "", "of fraction: share of the vertices", above_up_to(0, 1)}, self.fraction);
+    visit(OptionField{"separation", "", "", "of clustering: share of the bounding-box diagonal", above(0)},
+          self.separation);
+    visit(OptionField{"k", "", "", "weight of the squared trace", at_least_below(0, 0.25)}, self.k);
+  }
 };
 
 /// Harris 3D on a mesh: vertices where a quadratic patch fitted to their surroundings bends in both directions.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 namespace corral {
 namespace {
@@ -70,12 +70,12 @@ CORRAL_INLINE Lanes rounded(const Lanes& number) {
 template <class Lanes>
 class Voter {
  public:
-  CORRAL_INLINE Voter(const Support& support, const LocalReferenceFrame& frame, double radius, const std::string& form)
+  CORRAL_INLINE Voter(const Support& support, const LocalReferenceFrame& frame, double radius, ShotForm form)
       : support_(support),
         halves_(fill(2 / radius)),
         half_radius_(fill(radius / 2)),
-        after_nine_(fill(form == "pcl" ? -9 : 1)),
-        is_product_(form == "product") {
+        after_nine_(fill(form == ShotForm::PclBug ? -9 : 1)),
+        is_product_(form == ShotForm::Product) {
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 3; ++column) axes_[row][column] = fill(frame(row, column));
   }
@@ -210,10 +210,10 @@ CORRAL_INLINE std::optional<Eigen::VectorXd> normalized(Histograms& histograms) 
 }  // namespace
 
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
-                                              const std::string& form) {
+                                              ShotForm form) {
   std::optional<Eigen::VectorXd> result;
   thread_local Histograms histograms;  // stays in the cache, empty between the calls
-  const auto add = form == "product" ? add_products : add_one_axis_at_a_time;
+  const auto add = form == ShotForm::Product ? add_products : add_one_axis_at_a_time;
   Votes votes;
   vectorized([&](auto kind) {
     using Lanes = typename decltype(kind)::Lanes;

@@ -19,11 +19,15 @@ constexpr double kNoise_pr = 0.3;
 constexpr double kSeenShare = 0.3;
 constexpr double kInlier_pr = 4;
 
-struct Detector {
-  const char* name;
-  double radius_pr;
+/// From few keypoints to many.
+struct Density {
+  const char *detector, *option, *pr;
 };
-constexpr Detector kDetectors[] = {{"harris", 3}, {"harris", 2}, {"harris", 1.5}, {"uniform", 1.5}, {"uniform", 1}};
+constexpr Density kDensities[] = {{"harris", "radius_pr", "3"},
+                                  {"harris", "radius_pr", "2"},
+                                  {"harris", "radius_pr", "1.5"},
+                                  {"uniform", "spacing_pr", "1.5"},
+                                  {"uniform", "spacing_pr", "1"}};
 
 /// The share of the vertices that is farthest along x, with the triangles among them.
 Mesh part_of(const Mesh& mesh, double share) {
@@ -42,10 +46,10 @@ Mesh part_of(const Mesh& mesh, double share) {
   return part;
 }
 
-CorrespondenceSet matches_of(const Mesh& source, const Mesh& target, const Detector& detector) {
+CorrespondenceSet matches_of(const Mesh& source, const Mesh& target, const Density& density) {
   MatchSettings settings;
-  settings.detector = detector.name;
-  settings.keypoint_radius_pr = detector.radius_pr;
+  settings.detector = density.detector;
+  settings.options[density.detector][density.option] = density.pr;
   settings.threads = 1;
   return match_pair(source, target, settings).matches;
 }
@@ -66,9 +70,9 @@ double inlier_ratio(const CorrespondenceSet& matches, const RigidTransform& trut
 void add_tables(const std::string& scene, const Mesh& source, const Mesh& target, const RigidTransform& truth,
                 const std::vector<int>& sizes, std::vector<NaturalTable>& tables) {
   CorrespondenceSet all;
-  auto detector = std::begin(kDetectors);
+  auto density = std::begin(kDensities);
   for (const int size : sizes) {
-    while (all.size() < size && detector != std::end(kDetectors)) all = matches_of(source, target, *detector++);
+    while (all.size() < size && density != std::end(kDensities)) all = matches_of(source, target, *density++);
     if (all.size() < size) return;
     tables.push_back({scene, spread(all, size), 0});
     tables.back().inlier_ratio = inlier_ratio(tables.back().matches, truth);

@@ -5,13 +5,15 @@
 // searches in. The options are the paper's.
 
 #include "apps/pair/match_pair.h"
-#include "kernel/surface/descriptor.h"
 #include "kernel/surface/feature_matching.h"
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/fpfh.h"
+#include "kernel/surface/harris.h"
+#include "kernel/surface/iss.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/neighborhood.h"
 #include "kernel/surface/search/point_grid.h"
 #include "kernel/surface/search/resolution.h"
+#include "kernel/surface/shot.h"
 
 namespace corral::ours {
 
@@ -68,8 +70,19 @@ inline Indices harris(const Mesh& mesh, double resolution, double radius_pr = 3)
 inline Eigen::VectorXd response(const Mesh& mesh, double radius) { return harris_response(mesh.vertices, radius); }
 
 inline Descriptors shot(const Mesh& mesh, const Points& normals, const Indices& keypoints, double resolution,
-                        const std::string& form = "additive") {
+                        ShotForm form = ShotForm::Additive) {
   return describe_shot(mesh.vertices, normals, keypoints, resolution, {15, 10, form});
+}
+
+inline Indices iss(const Mesh& mesh, double resolution, IssWeights weights = IssWeights::Density) {
+  IssOptions options;
+  options.weights = weights;
+  return detect_iss(mesh, resolution, options).vertices;
+}
+
+inline Descriptors fpfh(const Mesh& mesh, const Points& normals, const Indices& keypoints, double resolution,
+                        FpfhForm form = FpfhForm::Paper) {
+  return describe_fpfh(mesh.vertices, normals, keypoints, resolution, {15, 10, form});
 }
 
 inline FeatureMatches matching(const Descriptors& source, const Descriptors& target) {

@@ -53,7 +53,7 @@ Setup pcl(Workload& load, const std::function<void(Pcl&, Workload&)>& stage) {
 }
 
 struct PclStages {
-  Setup resolution, normals, harris, shot, whole_match;
+  Setup resolution, normals, harris, iss, shot, fpfh, whole_match;
 };
 
 PclStages pcl_stages(Workload& load) {
@@ -61,6 +61,11 @@ PclStages pcl_stages(Workload& load) {
   stages.resolution = pcl(load, [](Pcl& surface, Workload&) { DoNotOptimize(surface.resolution()); });
   stages.normals = pcl(load, [](Pcl& surface, Workload&) { surface.estimate_normals(); });
   stages.harris = pcl(load, [](Pcl& surface, Workload& with) { surface.harris(3 * with.resolution()); });
+  stages.iss =
+      pcl(load, [](Pcl& surface, Workload& with) { surface.iss(6 * with.resolution(), 4 * with.resolution()); });
+  stages.fpfh = pcl(load, [](Pcl& surface, Workload& with) {
+    DoNotOptimize(surface.fpfh(with.keypoints(), 15 * with.resolution()).data());
+  });
   stages.shot = pcl(load, [](Pcl& surface, Workload& with) { surface.shot(with.keypoints(), 15 * with.resolution()); });
   stages.whole_match = [&load]() -> Call {
     const auto source = std::make_shared<Pcl>(load.mesh().vertices);
@@ -71,7 +76,7 @@ PclStages pcl_stages(Workload& load) {
 }
 #else
 struct PclStages {
-  Setup resolution, normals, harris, shot, whole_match;
+  Setup resolution, normals, harris, iss, shot, fpfh, whole_match;
 };
 PclStages pcl_stages(Workload&) { return {}; }
 #endif
@@ -106,6 +111,11 @@ void add_stages(Registry& registry, Workload& load) {
     return [&load, resolution] { DoNotOptimize(ours::harris(load.mesh(), resolution).data()); };
   };
   registry.add(load, "harris", harris, "pcl", theirs.harris);
+  const Setup iss = [&load]() -> Call {
+    const double resolution = load.resolution();
+    return [&load, resolution] { DoNotOptimize(ours::iss(load.mesh(), resolution).data()); };
+  };
+  registry.add(load, "iss", iss, "pcl", theirs.iss);
   const Setup shot = [&load]() -> Call {
     load.normals(), load.keypoints();
     return [&load] {
@@ -113,6 +123,13 @@ void add_stages(Registry& registry, Workload& load) {
     };
   };
   registry.add(load, "shot", shot, "pcl", theirs.shot);
+  const Setup fpfh = [&load]() -> Call {
+    load.normals(), load.keypoints();
+    return [&load] {
+      DoNotOptimize(ours::fpfh(load.mesh(), load.normals(), load.keypoints(), load.resolution()).vertices.data());
+    };
+  };
+  registry.add(load, "fpfh", fpfh, "pcl", theirs.fpfh);
   for (const int count : {1000, 5000}) {
     const Setup matching = [&load, count]() -> Call {
       const auto& features = load.features(count);

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/surface/descriptor.h"
 #include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/shot.h"
 
 namespace corral::benchmarks {
 

@@ -86,11 +86,56 @@ void compare_harris(const Mesh& mesh, const PclSurface& surface, double resoluti
               difference.cwiseAbs().mean());
 }
 
+void compare_iss(const Mesh& mesh, const PclSurface& surface, double resolution) {
+  IssOptions options;
+  options.weights = IssWeights::None;
+  const Indices ours = detect_iss(mesh, resolution, options).vertices,
+                theirs = surface.iss(options.salient_radius_pr * resolution, options.non_max_radius_pr * resolution);
+  const Eigen::VectorXd saliency = iss_saliency(mesh, resolution, options);
+  const PointIndex index(mesh.vertices);
+  Indices common, apart;
+  std::set_intersection(ours.begin(), ours.end(), theirs.begin(), theirs.end(), std::back_inserter(common));
+  std::set_symmetric_difference(ours.begin(), ours.end(), theirs.begin(), theirs.end(), std::back_inserter(apart));
+  int none = 0, tie = 0;  // of the others: no saliency for us; another vertex as salient to 1e-4
+  for (const int vertex : apart) {
+    const double beside =
+        largest_beside(saliency, index, mesh.vertices, vertex, 1.0001 * options.non_max_radius_pr * resolution);
+    none += saliency(vertex) == 0;
+    tie += saliency(vertex) > 0 && std::abs(beside / saliency(vertex) - 1) < 1e-4;
+  }
+  std::printf(
+      "  iss         ours %zu, theirs %zu, in common %zu; of the others %d without saliency here, %d ties, %d other\n",
+      ours.size(), theirs.size(), common.size(), none, tie, static_cast<int>(apart.size()) - none - tie);
+}
+
+void compare_fpfh(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints,
+                  const Points& normals) {
+  const Descriptors ours = ours::fpfh(mesh, normals, keypoints, resolution, FpfhForm::Pcl);
+  const Eigen::MatrixXf theirs = surface.fpfh(keypoints, 15 * resolution);
+  std::vector<double> differences;  // the largest of each keypoint
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < keypoints.size(); ++i) {
+    if (next == ours.vertices.size() || ours.vertices[next] != keypoints[i]) continue;
+    const Eigen::VectorXd column = theirs.col(static_cast<Eigen::Index>(i)).cast<double>();
+    differences.push_back((ours.features.col(static_cast<Eigen::Index>(next++)) - column).cwiseAbs().maxCoeff());
+  }
+  std::sort(differences.begin(), differences.end());
+  const auto within = [&](double limit) {
+    const auto end = std::upper_bound(differences.begin(), differences.end(), limit);
+    return percent(static_cast<std::size_t>(end - differences.begin()), differences.size());
+  };
+  std::printf(
+      "    fpfh        of %zu keypoints ours %zu; bins, of 100: all within 0.01 for %.2f %%, within 0.1 for %.2f %%, "
+      "median %.1e, largest %.1e\n",
+      keypoints.size(), ours.vertices.size(), within(0.01), within(0.1),
+      differences.empty() ? 0.0 : differences[differences.size() / 2], differences.empty() ? 0.0 : differences.back());
+}
+
 bool close(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff() <= kClose; }
 
 void compare_shot(const Mesh& mesh, const PclSurface& surface, double resolution, const Indices& keypoints,
                   const Points& normals) {
-  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, "pcl");
+  const Descriptors ours = ours::shot(mesh, normals, keypoints, resolution, ShotForm::PclBug);
   const Shot theirs = surface.shot(keypoints, 15 * resolution);
   std::size_t both = 0, same_frame = 0, flipped = 0, same = 0, valid = 0, next = 0;
   double largest = 0;
@@ -131,8 +176,11 @@ void compare(const char* path) {
   compare_normals(ours::normals(mesh), surface.normals());
   const Indices keypoints = surface.harris(3 * ours);
   compare_harris(mesh, surface, ours, keypoints);
+  compare_iss(mesh, surface, ours);
   std::printf("  with PCL's normals\n");
-  compare_shot(mesh, surface, ours, keypoints, surface.normals().array().isNaN().select(0.0, surface.normals()));
+  const Points normals = surface.normals().array().isNaN().select(0.0, surface.normals());
+  compare_shot(mesh, surface, ours, keypoints, normals);
+  compare_fpfh(mesh, surface, ours, keypoints, normals);
   std::printf("  with our normals towards the origin\n");
   compare_shot(mesh, surface, ours, keypoints, estimate_normals(mesh, {20, false}));
 }

@@ -2,11 +2,13 @@
 #include "tests/peers/pcl_surface.h"
 
 #include <pcl/console/print.h>
+#include <pcl/features/fpfh.h>
 #include <pcl/features/normal_3d.h>
 #include <pcl/features/shot.h>
 #include <pcl/features/shot_omp.h>
 #include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/keypoints/harris_3d.h>
+#include <pcl/keypoints/iss_3d.h>
 #include <pcl/point_types.h>
 
 #include <algorithm>
@@ -95,14 +97,14 @@ pcl::PointCloud<pcl::PointXYZI> detect(HarrisDetector& detector, const Cloud::Pt
   return corners;
 }
 
-template <typename Estimation>
-pcl::PointCloud<pcl::SHOT352> describe(Estimation&& estimation, const Cloud::Ptr& cloud,
-                                       const NormalCloud::Ptr& normals, const Indices& keypoints, double radius) {
+template <typename Described = pcl::SHOT352, typename Estimation>
+pcl::PointCloud<Described> describe(Estimation&& estimation, const Cloud::Ptr& cloud, const NormalCloud::Ptr& normals,
+                                    const Indices& keypoints, double radius) {
   estimation.setInputCloud(cloud);
   estimation.setInputNormals(normals);
   estimation.setIndices(pcl::IndicesPtr(new pcl::Indices(keypoints.begin(), keypoints.end())));
   estimation.setRadiusSearch(radius);
-  pcl::PointCloud<pcl::SHOT352> described;
+  pcl::PointCloud<Described> described;
   estimation.compute(described);
   return described;
 }
@@ -125,6 +127,30 @@ Eigen::VectorXf PclSurface::harris_response(double radius) const {
   for (std::size_t row = 0; row < corners.size(); ++row)
     response(static_cast<Eigen::Index>(row)) = corners[row].intensity;
   return response;
+}
+
+Indices PclSurface::iss(double salient_radius, double non_max_radius) const {
+  pcl::ISSKeypoint3D<pcl::PointXYZ, pcl::PointXYZ> detector(salient_radius);
+  detector.setInputCloud(clouds_->points);
+  detector.setNonMaxRadius(non_max_radius);
+  detector.setThreshold21(0.975);
+  detector.setThreshold32(0.975);
+  detector.setMinNeighbors(5);
+  detector.setNumberOfThreads(1);
+  Cloud keypoints;
+  detector.compute(keypoints);
+  const auto& rows = detector.getKeypointsIndices()->indices;
+  return Indices(rows.begin(), rows.end());
+}
+
+Eigen::MatrixXf PclSurface::fpfh(const Indices& keypoints, double radius) const {
+  const auto described =
+      describe<pcl::FPFHSignature33>(pcl::FPFHEstimation<pcl::PointXYZ, pcl::Normal, pcl::FPFHSignature33>(),
+                                     clouds_->points, clouds_->normals, keypoints, radius);
+  Eigen::MatrixXf features(33, static_cast<Eigen::Index>(described.size()));
+  for (std::size_t i = 0; i < described.size(); ++i)
+    features.col(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::VectorXf>(described[i].histogram, 33);
+  return features;
 }
 
 Shot PclSurface::shot(const Indices& keypoints, double radius, int threads) const {

@@ -39,6 +39,12 @@ class PclSurface {
   Indices harris(double radius) const;
   Eigen::VectorXf harris_response(double radius) const;  ///< of every vertex, without suppression
 
+  /// ISS keypoints as vertices, ascending; thresholds 0.975, at least 5 neighbours, no test for borders; one thread.
+  Indices iss(double salient_radius, double non_max_radius) const;
+
+  /// FPFH of some vertices, 33 x N, by the estimator without OpenMP; needs normals.
+  Eigen::MatrixXf fpfh(const Indices& keypoints, double radius) const;
+
   /// Descriptors of some vertices; needs normals. On one thread the estimator without OpenMP: its answers are the same, and
   /// it is the faster one (the other searches every neighbourhood once more).
   Shot shot(const Indices& keypoints, double radius, int threads = 1) const;

@@ -77,7 +77,7 @@ TEST(RigidCost, FollowsAutomaticDerivatives) {
   for (const RobustLoss kind : kLosses)
     for (int trial = 0; trial < 20; ++trial) {
       const RigidTransform pose{random.rotation(), 3 * random.direction()};
-      PointPairs pairs{Points(9, 3), Points(9, 3)};
+      MatchedPoints pairs{Points(9, 3), Points(9, 3)};
       for (int row = 0; row < 9; ++row) {
         pairs.source.row(row) = random.uniform(0, 40) * random.direction().transpose();
         pairs.target.row(row) =

@@ -15,11 +15,12 @@
 
 namespace corral::testing {
 
-inline const char* const kNeighborhoods[] = {"rings", "ball", "adaptive"};
-inline const char* const kSelections[] = {"fraction", "clustering"};
+constexpr MeshNeighborhood kNeighborhoods[] = {MeshNeighborhood::Rings, MeshNeighborhood::Ball,
+                                               MeshNeighborhood::Adaptive};
+constexpr MeshSelection kSelections[] = {MeshSelection::Fraction, MeshSelection::Clustering};
 
 /// Neighbourhoods of some 20 vertices on the meshes of these tests, and selections that leave some candidates out.
-inline HarrisMeshOptions options_of(const std::string& neighborhood, const std::string& selection = "fraction") {
+inline HarrisMeshOptions options_of(MeshNeighborhood neighborhood, MeshSelection selection = MeshSelection::Fraction) {
   HarrisMeshOptions options;
   options.neighborhood = neighborhood;
   options.selection = selection;

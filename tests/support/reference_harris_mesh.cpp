@@ -59,8 +59,8 @@ Set grown(const Mesh& mesh, const std::vector<Set>& neighbors, int vertex, int r
 
 Set neighborhood_of(const Mesh& mesh, const std::vector<Set>& neighbors, int vertex, double resolution,
                     const HarrisMeshOptions& options) {
-  if (options.neighborhood == "rings") return grown(mesh, neighbors, vertex, options.rings, INFINITY);
-  if (options.neighborhood == "adaptive")
+  if (options.neighborhood == MeshNeighborhood::Rings) return grown(mesh, neighbors, vertex, options.rings, INFINITY);
+  if (options.neighborhood == MeshNeighborhood::Adaptive)
     return grown(mesh, neighbors, vertex, 1 << 30, options.extent * diagonal(mesh));
   Set ball;
   for (int other = 0; other < mesh.vertices.rows(); ++other)
@@ -144,8 +144,8 @@ Keypoints reference_harris_mesh(const Mesh& mesh, double resolution, const Harri
   const double wanted = std::round(options.fraction * static_cast<double>(mesh.vertices.rows()));
   for (const auto& [turned, vertex] : candidates) {
     bool taken = true;
-    if (options.selection == "fraction") taken = static_cast<double>(keypoints.vertices.size()) < wanted;
-    if (options.selection == "clustering")
+    if (options.selection == MeshSelection::Fraction) taken = static_cast<double>(keypoints.vertices.size()) < wanted;
+    if (options.selection == MeshSelection::Clustering)
       for (const int kept : keypoints.vertices)
         if (!((place(mesh, kept) - place(mesh, vertex)).norm() > options.separation * diagonal(mesh))) taken = false;
     if (taken) keypoints.vertices.push_back(vertex);

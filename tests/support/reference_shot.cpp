@@ -124,24 +124,24 @@ std::optional<LocalReferenceFrame> reference_shot_frame(const Points& vertices, 
 }
 
 Eigen::VectorXd reference_shot_votes(const Points& vertices, const Points& normals, const Eigen::Vector3d& point,
-                                     const LocalReferenceFrame& frame, double radius, const std::string& form) {
+                                     const LocalReferenceFrame& frame, double radius, ShotForm form) {
   Eigen::VectorXd histogram = Eigen::VectorXd::Zero(8 * 2 * 2 * 11);
   for (int row = 0; row < vertices.rows(); ++row) {
     const Eigen::Vector3d away = row_of(vertices, row) - point, local = frame * away;
     const Eigen::Vector3d normal = row_of(normals, row);
     if (!(away.norm() > 0) || away.norm() > radius || normal.isZero(0)) continue;
     const Place place = place_of(local, normal.dot(frame.row(2)), radius);
-    if (form == "product")
+    if (form == ShotForm::Product)
       add_product(place, histogram);
     else
-      add_axis_by_axis(local, place, form == "pcl", radius, histogram);
+      add_axis_by_axis(local, place, form == ShotForm::PclBug, radius, histogram);
   }
   return histogram;
 }
 
 std::optional<Eigen::VectorXd> reference_shot_histogram(const Points& vertices, const Points& normals,
                                                         const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
-                                                        double radius, const std::string& form) {
+                                                        double radius, ShotForm form) {
   const Eigen::VectorXd votes = reference_shot_votes(vertices, normals, point, frame, radius, form);
   if (votes.isZero(0)) return std::nullopt;
   return votes / votes.norm();

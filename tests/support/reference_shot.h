@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 namespace corral::testing {
 
@@ -23,10 +23,10 @@ std::optional<LocalReferenceFrame> reference_shot_frame(const Points& vertices, 
 /// The histogram before its length is made one: what the vertices within the radius, normals not zero, add up to.
 Eigen::VectorXd reference_shot_votes(const Points& vertices, const Points& normals, const Eigen::Vector3d& point,
                                      const LocalReferenceFrame& frame, double radius,
-                                     const std::string& form = "additive");
+                                     ShotForm form = ShotForm::Additive);
 
 std::optional<Eigen::VectorXd> reference_shot_histogram(const Points& vertices, const Points& normals,
                                                         const Eigen::Vector3d& point, const LocalReferenceFrame& frame,
-                                                        double radius, const std::string& form = "additive");
+                                                        double radius, ShotForm form = ShotForm::Additive);
 
 }  // namespace corral::testing

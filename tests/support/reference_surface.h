@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/harris.h"
 #include "kernel/surface/mesh/mesh.h"
 #include "kernel/surface/search/neighborhood.h"
 

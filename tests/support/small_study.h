@@ -45,8 +45,12 @@ repeats = 2
 
 [matching]
 detector = "uniform"
-keypoint_radius_pr = 2.5
-support_radius_pr = 8
+
+[options.uniform]
+spacing_pr = 2.5
+
+[options.shot]
+radius_pr = 8
 )toml";
 
 /// records.csv without the times, which no two runs share.

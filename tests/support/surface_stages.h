@@ -7,11 +7,11 @@
 
 #include <string>
 
-#include "kernel/surface/descriptor.h"
 #include "kernel/surface/feature_matching.h"
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/harris.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/resolution.h"
+#include "kernel/surface/shot.h"
 
 namespace corral::testing {
 
@@ -24,7 +24,7 @@ struct SurfaceStages {
 };
 
 inline SurfaceStages run_stages(const Mesh& mesh, const ParallelFor& parallel = one_by_one,
-                                const std::string& form = "additive") {
+                                ShotForm form = ShotForm::Additive) {
   SurfaceStages stages;
   stages.resolution = point_resolution(mesh.vertices, parallel);
   stages.normals = estimate_normals(mesh, {}, parallel);

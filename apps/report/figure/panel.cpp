@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "apps/runtime/report.h"
+#include "apps/runtime/text_table.h"
 #include "io/csv_file.h"
 #include "kernel/number_text.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/runtime/report.h"
 #include "apps/report/figure/panel.h"
+#include "apps/runtime/text_table.h"
 
 namespace corral {
 namespace {

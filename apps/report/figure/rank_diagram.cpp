@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "apps/runtime/report.h"
 #include "apps/report/figure/panel.h"
+#include "apps/runtime/text_table.h"
 #include "io/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"

@@ -88,7 +88,7 @@ TEST_F(Evaluate, AgreesWithRun) {
       place_
           .corral(
               "run data/b3r/m2.ply data/b3r/m2-0.25.ply --truth data/b3r/m2-0.25.txt --json --detector "
-              "uniform --keypoint-radius-pr 2.5 --support-radius-pr 8 --resolution source -o ran")
+              "uniform --set uniform.spacing_pr=2.5 --set shot.radius_pr=8 --resolution source -o ran")
           .json()["methods"];
   const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
   const StudyPair pair = read_run(place_ / "run").pairs.at("b3r/m2-0.25");
@@ -253,9 +253,10 @@ TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
 }
 
 TEST_F(Evaluate, NumbersOfMatchesAreBinnedAsTheyTurnOut) {
-  place_.put("small.toml", replaced(replaced(replaced(kSmallExperiment, "noise_pr", "matches"),
-                                             "levels = [0.05, 0.25, 0.45]", "bins = [[10, 100], [100, 1000]]"),
-                                    "keypoint_radius_pr = 2.5", "keypoint_radii_pr = [2.5, 6, 30]"));
+  place_.put("small.toml",
+             replaced(replaced(replaced(kSmallExperiment, "noise_pr", "matches"), "levels = [0.05, 0.25, 0.45]",
+                               "bins = [[10, 100], [100, 1000]]"),
+                      "[options.uniform]\nspacing_pr = 2.5", "[vary.uniform]\nspacing_pr = [2.5, 6, 30]"));
   ASSERT_EQ(evaluate("-o run").status, 0);
   std::map<std::string, int> levels;
   for (const StudyRecord& record : read_run(place_ / "run").records) {

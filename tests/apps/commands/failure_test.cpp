@@ -70,16 +70,18 @@ TEST(Usage, AnOptionThatIsNotThereIsAnsweredWithThoseThatAre) {
   const auto set = [&](const std::string& settings) {
     return place.corral("group matches.csv -o g.csv -m ransac " + settings);
   };
-  const Outcome unknown = set("--set tolerance=3");
+  const Outcome unknown = set("--set ransac.tolerance=3");
   expect_usage(unknown, "tolerance");
   for (const char* name : {"iterations", "tolerance_pr", "seed"}) EXPECT_THAT(unknown.err, HasSubstr(name));
-  expect_usage(set("--set tolerance_pr=0"), "tolerance_pr is 0, expected");
-  expect_usage(set("--set tolerance_pr=nan"), "tolerance_pr is nan, expected");
-  expect_usage(set("--set iterations=many"), "iterations is 'many', expected");
-  expect_usage(set("--set iterations=2.5"), "iterations is '2.5', expected");
-  expect_usage(set("--set seed=1 --set seed=2"), "set twice");
-  expect_usage(set("--set seed"), "expected key=value");
-  expect_usage(set("--set =1"), "expected key=value");
+  expect_usage(set("--set ransac.tolerance_pr=0"), "tolerance_pr is 0, expected");
+  expect_usage(set("--set ransac.tolerance_pr=nan"), "tolerance_pr is nan, expected");
+  expect_usage(set("--set ransac.iterations=many"), "iterations is 'many', expected");
+  expect_usage(set("--set ransac.iterations=2.5"), "iterations is '2.5', expected");
+  expect_usage(set("--set ransac.seed=1 --set ransac.seed=2"), "set twice");
+  for (const char* bad : {"seed", "seed=1", "=1", ".seed=1", "ransac.=1", "ransac.seed"})
+    expect_usage(set("--set " + std::string(bad)), "expected NAME.OPTION=VALUE");
+  expect_usage(set("--set gc.tolerance_pr=1"), "gc is not in use here, expected an option of ransac");
+  expect_usage(set("--set ransack.seed=1"), "did you mean 'ransac'?");
   expect_usage(set("--repeat 0"), "--repeat");
   expect_usage(set("--repeat x"), "--repeat");
   EXPECT_THAT(place.names(), Not(::testing::Contains("g.csv")));

@@ -35,8 +35,8 @@ TEST(MatchOptions, DefaultsAreWhatTheHelpSays) {
   table_of(place, "");
   const std::string expected = place.text("table.csv");
   table_of(place,
-           "--resolution mean --detector harris --keypoint-radius-pr 3 --support-radius-pr 15 --normals mesh "
-           "--sensor 0,0,0 --shot additive --matcher exact --threads 0");
+           "--resolution mean --detector harris --set harris.radius_pr=3 --descriptor shot --set shot.radius_pr=15 "
+           "--frames shot --normals mesh --sensor 0,0,0 --set shot.form=additive --matcher exact --threads 0");
   EXPECT_EQ(place.text("table.csv"), expected);
 }
 
@@ -44,21 +44,24 @@ TEST(MatchOptions, EachOneChangesTheTable) {
   const Workplace place;
   place.put_pair();
   std::set<std::string> tables;
-  const std::string options[] = {"",
-                                 "--detector harris-mesh",
-                                 "--detector harris-mesh --mesh-neighborhood rings --mesh-rings 3",
-                                 "--detector harris-mesh --mesh-neighborhood ball",
-                                 "--detector harris-mesh --mesh-selection clustering --mesh-separation 0.05",
-                                 "--detector harris-mesh --mesh-fraction 0.02",
-                                 "--detector harris-mesh --mesh-extent 0.05",
-                                 "--detector uniform",
-                                 "--detector uniform --keypoint-radius-pr 5",
-                                 "--normals origin",
-                                 "--normals origin --sensor 10,-20,30.5",
-                                 "--normals origin --sensor -1e1,2,-3",
-                                 "--shot pcl",
-                                 "--shot product",
-                                 "--mutual"};
+  const std::string options[] = {
+      "",
+      "--detector harris-mesh",
+      "--detector harris-mesh --set harris-mesh.neighborhood=rings --set harris-mesh.rings=3",
+      "--detector harris-mesh --set harris-mesh.neighborhood=ball",
+      "--detector harris-mesh --set harris-mesh.selection=clustering --set harris-mesh.separation=0.05",
+      "--detector harris-mesh --set harris-mesh.fraction=0.02",
+      "--detector harris-mesh --set harris-mesh.extent=0.05",
+      "--detector uniform",
+      "--detector uniform --set uniform.spacing_pr=5",
+      "--normals origin",
+      "--normals origin --sensor 10,-20,30.5",
+      "--normals origin --sensor -1e1,2,-3",
+      "--set shot.form=pcl-bug",
+      "--set shot.radius_pr=10",
+      "--frames none",
+      "--set shot.form=product",
+      "--mutual"};
   for (const std::string& option : options) {
     EXPECT_GT(table_of(place, option).size(), 3) << option;
     EXPECT_TRUE(tables.insert(place.text("table.csv")).second) << option << " gives a table seen before";
@@ -68,8 +71,8 @@ TEST(MatchOptions, EachOneChangesTheTable) {
 TEST(MatchOptions, UniformPutsOneKeypointIntoEachCube) {
   const Workplace place;
   place.put_pair();
-  const CorrespondenceSet few = table_of(place, "--detector uniform --keypoint-radius-pr 8"),
-                          many = table_of(place, "--detector uniform --keypoint-radius-pr 4");
+  const CorrespondenceSet few = table_of(place, "--detector uniform --set uniform.spacing_pr=8"),
+                          many = table_of(place, "--detector uniform --set uniform.spacing_pr=4");
   EXPECT_GT(many.size(), 3 * few.size());
 }
 
@@ -128,7 +131,7 @@ TEST(MatchOptions, FlannFindsNearlyTheSame) {
 TEST(MatchOptions, ThreadsDoNotMatter) {
   const Workplace place;
   place.put_pair();
-  for (const char* options : {"", "--mutual --shot product", "--detector harris-mesh"}) {
+  for (const char* options : {"", "--mutual --set shot.form=product", "--detector harris-mesh"}) {
     table_of(place, std::string(options) + " --threads 1");
     const std::string expected = place.text("table.csv");
     for (const char* threads : {"0", "2", "5"}) {
@@ -142,22 +145,30 @@ TEST(MatchOptions, BadValuesAreRefusedInOneSentence) {
   const Workplace place;
   place.put_pair();
   const std::pair<std::string, std::string> said[] = {
-      {"--detector sift", "expected harris|harris-mesh|uniform"},
+      {"--detector sift", "expected harris|harris-mesh|"},
+      {"--descriptor sift", "expected shot|"},
       {"--detector Harris", "--detector is 'Harris'"},
       {"--normals outward", "expected mesh|origin"},
-      {"--shot quadrilinear", "expected additive|pcl|product"},
+      {"--frames some", "expected shot|none"},
+      {"--set shot.form=quadrilinear", "expected additive|product|pcl-bug"},
       {"--matcher kdtree", "expected exact|flann"},
       {"--threads -1", "--threads"},
       {"--threads 257", "--threads"},
       {"--threads 1.5", "--threads"},
       {"--threads many", "--threads"},
       {"--mutual=perhaps", "mutual"},
-      {"--mesh-rings 0", "rings"},
-      {"--mesh-neighborhood spatial", "expected rings, ball or adaptive"},
-      {"--mesh-selection best", "expected fraction or clustering"},
-      {"--mesh-fraction 2", "fraction"},
-      {"--mesh-extent nan", "extent"},
-      {"--mesh-separation -1", "separation"},
+      {"--detector harris-mesh --set harris-mesh.rings=0", "rings"},
+      {"--detector harris-mesh --set harris-mesh.neighborhood=spatial", "expected adaptive|rings|ball"},
+      {"--detector harris-mesh --set harris-mesh.selection=best", "expected fraction|clustering"},
+      {"--detector harris-mesh --set harris-mesh.fraction=2", "fraction"},
+      {"--detector harris-mesh --set harris-mesh.extent=nan", "extent"},
+      {"--set harris.radius_pr=0", "radius_pr is 0"},
+      {"--set harris.radius=3", "expected radius_pr"},
+      {"--set uniform.spacing_pr=3", "uniform is not in use here, expected an option of harris, shot"},
+      {"--set haris.radius_pr=3", "did you mean 'harris'?"},
+      {"--set radius_pr=3", "expected NAME.OPTION=VALUE"},
+      {"--set harris.=3", "expected NAME.OPTION=VALUE"},
+      {"--set harris.radius_pr=3 --set harris.radius_pr=4", "set twice"},
       {"--resolution median", "--resolution is 'median'"}};
   const auto before = place.names();
   for (const char* command : {"match", "run"})
@@ -225,7 +236,8 @@ TEST(RunOptions, AreThoseOfMatchAndAreWrittenDown) {
   const Workplace place;
   place.put_pair();
   const std::string options =
-      "--detector uniform --keypoint-radius-pr 6 --normals origin --sensor -1,2,3 --shot product --mutual --threads 2";
+      "--detector uniform --set uniform.spacing_pr=6 --normals origin --sensor -1,2,3 --set shot.form=product --mutual "
+      "--threads 2";
   const Outcome outcome =
       place.corral("run model.ply copy.ply --truth truth.txt --methods gc -o out --json " + options);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -233,19 +245,22 @@ TEST(RunOptions, AreThoseOfMatchAndAreWrittenDown) {
   EXPECT_EQ(place.text("out/matches.csv"), place.text("table.csv"));
   const auto matching = outcome.json()["details"]["matching"];
   EXPECT_EQ(matching["detector"], "uniform");
-  EXPECT_EQ(matching["keypoint_radius_pr"], 6);
+  EXPECT_EQ(matching["descriptor"], "shot");
+  EXPECT_EQ(matching["options"]["uniform"]["spacing_pr"], 6);
   EXPECT_EQ(matching["normals"], "origin");
   EXPECT_EQ(matching["sensor"], nlohmann::json::parse("[-1.0, 2.0, 3.0]"));
-  EXPECT_EQ(matching["shot"], "product");
+  EXPECT_EQ(matching["options"]["shot"]["form"], "product");
+  EXPECT_EQ(matching["frames"], "shot");
   EXPECT_EQ(matching["matcher"], "exact");
   EXPECT_EQ(matching["mutual"], true);
   EXPECT_FALSE(matching.contains("threads")) << "results do not depend on it";
-  EXPECT_FALSE(matching.contains("harris_mesh"));
+  EXPECT_FALSE(matching["options"].contains("harris")) << "not in use";
   EXPECT_GT(outcome.json()["frame_repeatability"], 0);
   EXPECT_LE(outcome.json()["frame_repeatability"], 1);
   const auto other =
-      place.corral("run model.ply copy.ply --methods gc --json --detector harris-mesh --mesh-rings 4").json();
-  EXPECT_EQ(other["details"]["matching"]["harris_mesh"]["rings"], 4);
+      place.corral("run model.ply copy.ply --methods gc --json --detector harris-mesh --set harris-mesh.rings=4")
+          .json();
+  EXPECT_EQ(other["details"]["matching"]["options"]["harris-mesh"]["rings"], 4);
   EXPECT_TRUE(other["frame_repeatability"].is_null()) << "without a truth";
 }
 

@@ -45,8 +45,8 @@ TEST(Group, SelectsWithEveryMethod) {
 TEST(Group, JsonHoldsTheOptionsAndTheMedianTime) {
   const Workplace place;
   place.put_problem();
-  const Outcome outcome =
-      place.corral("group matches.csv -m ransac --set seed=7 --set iterations=500 --repeat 3 --json -o g.csv");
+  const Outcome outcome = place.corral(
+      "group matches.csv -m ransac --set ransac.seed=7 --set ransac.iterations=500 --repeat 3 --json -o g.csv");
   expect_ok(outcome);
   const auto json = outcome.json();
   EXPECT_THAT(keys_of(json), ElementsAre("matches", "method", "options", "repeat", "selected", "status", "time_ms",

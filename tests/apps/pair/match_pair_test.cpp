@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernel/error.h"
+#include "kernel/number_text.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
@@ -32,8 +33,8 @@ Mesh enlarged(Mesh mesh, double factor) {
 MatchSettings settings_of(const std::string& resolution, double keypoint_radius_pr = 3, double support_radius_pr = 15) {
   MatchSettings settings;
   settings.resolution = resolution;
-  settings.keypoint_radius_pr = keypoint_radius_pr;
-  settings.support_radius_pr = support_radius_pr;
+  settings.options = {{"harris", {{"radius_pr", to_text(keypoint_radius_pr)}}},
+                      {"shot", {{"radius_pr", to_text(support_radius_pr)}}}};
   return settings;
 }
 
@@ -50,8 +51,11 @@ TEST(MatchPair, TheRuleGivesTheResolution) {
     const MatchedPair pair = match_pair(source, target, settings_of(rule, 3, 15));
     EXPECT_DOUBLE_EQ(pair.report.resolution, expected) << rule;
     EXPECT_EQ(pair.matches.resolution, pair.report.resolution) << rule;
-    EXPECT_DOUBLE_EQ(pair.report.keypoint_radius, 3 * expected) << rule;
-    EXPECT_DOUBLE_EQ(pair.report.support_radius, 15 * expected) << rule;
+    ASSERT_EQ(pair.report.lengths.size(), 2u);
+    EXPECT_EQ(pair.report.lengths[0].name, "harris.radius_pr");
+    EXPECT_EQ(pair.report.lengths[0].pr, 3);
+    EXPECT_EQ(pair.report.lengths[1].name, "shot.radius_pr");
+    EXPECT_EQ(pair.report.lengths[1].usual_pr, 15);
     EXPECT_DOUBLE_EQ(pair.report.source.resolution, pr) << "its own, whatever the rule";
     EXPECT_DOUBLE_EQ(pair.report.target.resolution, 2 * pr);
   }
@@ -125,16 +129,18 @@ TEST(MatchPair, SettingsAreChecked) {
     EXPECT_EQ(refusal_of([&] { match_pair(testing::icosphere(1), testing::icosphere(1), settings); }), said);
     return said;
   };
-  EXPECT_THAT(refused([](MatchSettings& s) { s.detector = "sift"; }), HasSubstr("harris|harris-mesh|uniform"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.normals = ""; }), HasSubstr("mesh|origin"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.shot = "PCL"; }), HasSubstr("additive|pcl|product"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.detector = "sift"; }), HasSubstr("harris|harris-mesh|"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.descriptor = "SHOT"; }), HasSubstr("shot"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.sensor = {1, 2}; }), HasSubstr("three finite coordinates"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.sensor[1] = HUGE_VAL; }), HasSubstr("three finite coordinates"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.threads = -1; }), HasSubstr("--threads is -1"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.keypoint_radius_pr = 0; }), HasSubstr("--keypoint-radius-pr"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.support_radius_pr = HUGE_VAL; }), HasSubstr("--support-radius-pr"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.matching.matcher = "tree"; }), HasSubstr("exact|flann"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.harris_mesh.rings = 0; }), HasSubstr("rings"));
+  const auto set = [&](const std::string& name, const std::string& option, const std::string& value) {
+    return refused([&](MatchSettings& s) { s.options[name][option] = value; });
+  };
+  EXPECT_THAT(set("harris", "radius_pr", "0"), HasSubstr("radius_pr is 0"));
+  EXPECT_THAT(set("shot", "radius_pr", "inf"), HasSubstr("radius_pr is inf"));
+  EXPECT_THAT(set("shot", "form", "pcl"), HasSubstr("additive|product|pcl-bug"));
+  EXPECT_THAT(set("harris-mesh", "rings", "3"), HasSubstr("'harris-mesh', which is not in use"));
 }
 
 TEST(MatchPair, TheReportAddsUp) {
@@ -155,15 +161,14 @@ TEST(MatchPair, TheReportAddsUp) {
 
 TEST(MatchPair, AnnouncesItsStages) {
   std::vector<std::string> stages;
-  const MatchReport report =
-      match_pair(testing::icosphere(2), testing::icosphere(2), {}, [&](const std::string& stage) {
-        stages.push_back(stage);
-      }).report;
+  const MatchReport report = match_pair(testing::icosphere(2), testing::icosphere(2), {},
+                                        {[&](const std::string& stage) { stages.push_back(stage); }})
+                                 .report;
   EXPECT_EQ(stages.size(), static_cast<std::size_t>(match_stages({})));
   MatchSettings inspecting;
   inspecting.inspect = true;
   int announced = 0;
-  match_pair(testing::icosphere(2), testing::icosphere(2), inspecting, [&](const std::string&) { ++announced; });
+  match_pair(testing::icosphere(2), testing::icosphere(2), inspecting, {[&](const std::string&) { ++announced; }});
   EXPECT_EQ(announced, match_stages(inspecting));
   EXPECT_EQ(stages.front(), "normals and resolution of the source");
   EXPECT_EQ(stages.back(), "matching");
@@ -192,14 +197,13 @@ TEST(MatchPair, AFlatGridHasNoKeypointAndSaysSo) {
 TEST(MatchPair, ARadiusTooSmallIsNamedWithABetterOne) {
   const Mesh bumpy = testing::bumpy_sphere(4, 1);
   for (const std::string& hint : report_of(bumpy, bumpy, settings_of("mean", 0.25, 15)).hints)
-    EXPECT_THAT(hint,
-                AllOf(HasSubstr("keypoint radius is"), HasSubstr("0.25 pr of this side"), HasSubstr("use about 3 pr")));
+    EXPECT_THAT(hint, AllOf(HasSubstr("harris.radius_pr is 0.25 pr of this side"), HasSubstr("use about 3 pr")));
   EXPECT_EQ(report_of(bumpy, bumpy, settings_of("mean", 0.25, 15)).hints.size(), 2U);
   const MatchReport small_support = report_of(bumpy, bumpy, settings_of("mean", 3, 1));
   EXPECT_GT(small_support.source.candidates, 0);
   EXPECT_EQ(small_support.source.dropped_small_support, small_support.source.candidates);
   EXPECT_THAT(small_support.hints, ElementsAre(AllOf(HasSubstr("no keypoint of the source could be described"),
-                                                     HasSubstr("support radius"), HasSubstr("use about 15 pr")),
+                                                     HasSubstr("shot.radius_pr is"), HasSubstr("use about 15 pr")),
                                                HasSubstr("target")));
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/pair/match_pair.h"
-#include "apps/runtime/report.h"
+#include "apps/pair/match_report.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 

@@ -62,6 +62,12 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+TEST(ScoreJson, AScoreHoldsItsCounts) {
+  const Json json = to_json(GroupingScore{9, 0, 0, 0, std::nullopt, std::nullopt, std::nullopt});
+  EXPECT_EQ(json.dump(),
+            R"({"matches":9,"selected":0,"correct":0,"true_matches":0,"precision":null,"recall":null,"f1":null})");
+}
+
 TEST(MethodsCsv, ReadsBackAsTheSameNumbers) {
   const auto lines = lines_of(methods_csv({full_record()}));
   ASSERT_EQ(lines.size(), 2U);

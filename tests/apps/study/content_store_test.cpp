@@ -21,7 +21,7 @@ using testing::text_of;
 MatchSettings few_keypoints() {
   MatchSettings settings;
   settings.detector = "uniform";
-  settings.keypoint_radius_pr = 6;
+  settings.options["uniform"]["spacing_pr"] = "6";
   settings.threads = 1;
   return settings;
 }
@@ -30,7 +30,7 @@ TEST(ContentStore, GivesBackWhatWasPut) {
   const ScratchFolder folder;
   const ContentStore store(folder / "store");
   const Mesh mesh = testing::bumpy_sphere(3, 1);
-  const Descriptors descriptors = describe_surface(mesh, estimate_normals(mesh), 0.1, few_keypoints()).descriptors;
+  const Descriptors descriptors = describe_surface(mesh, 0.1, few_keypoints()).descriptors;
   ASSERT_GT(descriptors.vertices.size(), 10u);
   EXPECT_FALSE(store.descriptors("key"));
   store.put("key", descriptors);

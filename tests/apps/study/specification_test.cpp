@@ -26,8 +26,10 @@ density = ["", "1"]
 [options.gc]
 tolerance_pr = 2
 cluster = "clique"
+[options.harris]
+radius_pr = 2
 [matching]
-keypoint_radius_pr = 2
+normals = "origin"
 )toml";
 
 std::string error_of(const std::string& text) {
@@ -44,13 +46,15 @@ TEST(Specification, ReadsWhatStandsInIt) {
   EXPECT_EQ(experiment.info.levels.at(0).label, "0.05");
   EXPECT_EQ(experiment.info.levels.at(1).label, "1");
   EXPECT_THAT(experiment.info.methods, ElementsAre("st", "gc"));
-  EXPECT_EQ(experiment.matching.keypoint_radius_pr, 2);
+  const MatchSettings matching = matching_at(experiment, experiment.info.levels[0]);
+  EXPECT_EQ(matching.options, (OptionsByName{{"harris", {{"radius_pr", "2"}}}}));
+  EXPECT_EQ(matching.normals, NormalSide::Origin);
   EXPECT_EQ(experiment.filters.at(0).attribute, "density");
   EXPECT_EQ(experiment.info.threshold_pr, 4);
   EXPECT_EQ(experiment.info.least_true_matches, 1);
   const OptionOverrides expected = {{"cluster", "clique"}, {"tolerance_pr", "2"}};
-  EXPECT_EQ(method_options(experiment, "gc", experiment.info.levels[0]), expected);
-  EXPECT_TRUE(method_options(experiment, "st", experiment.info.levels[0]).empty());
+  EXPECT_EQ(options_at(experiment, "gc", experiment.info.levels[0]), expected);
+  EXPECT_TRUE(options_at(experiment, "st", experiment.info.levels[0]).empty());
 }
 
 TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
@@ -58,8 +62,11 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   EXPECT_THAT(with("groupers", "grupers"), AllOf(HasSubstr("line 5"), HasSubstr("did you mean 'groupers'?")));
   EXPECT_THAT(with("\"st\"", "\"sst\""), HasSubstr("did you mean 'ss'?"));
   EXPECT_THAT(with("\"st\"", "\"gc\""), HasSubstr("gc stands twice"));
-  EXPECT_THAT(with("keypoint_radius_pr = 2", "keypoint_radus_pr = 2"), HasSubstr("did you mean 'keypoint_radius_pr'?"));
-  EXPECT_THAT(with("keypoint_radius_pr = 2", "keypoint_radius_pr = 0"), HasSubstr("matching"));
+  EXPECT_THAT(with("normals =", "normal ="), HasSubstr("did you mean 'normals'?"));
+  EXPECT_THAT(with("\"origin\"", "\"sensor\""), HasSubstr("expected mesh|origin"));
+  EXPECT_THAT(with("radius_pr = 2", "radius = 2"), HasSubstr("expected radius_pr"));
+  EXPECT_THAT(with("radius_pr = 2", "radius_pr = 0"), HasSubstr("radius_pr is 0"));
+  EXPECT_THAT(with("options.harris", "options.harris-mesh"), HasSubstr("'harris-mesh', which is not in use"));
   EXPECT_THAT(with("tolerance_pr", "tolerance"), HasSubstr("tolerance"));
   EXPECT_THAT(with("tolerance_pr = 2", "tolerance_pr = -2"), HasSubstr("tolerance_pr"));
   EXPECT_THAT(with("cluster = \"clique\"", "seed = 3"), HasSubstr("seed of the experiment"));
@@ -78,7 +85,7 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   for (const char* rows : {"0.5", "1e300"})
     EXPECT_THAT(error_of(testing::replaced(testing::replaced(kGood, "noise_pr", "table_size"), "0.05", rows)),
                 HasSubstr("whole numbers of rows"));
-  EXPECT_THAT(with("noise_pr", "si.similarity"), HasSubstr("not among the groupers"));
+  EXPECT_THAT(with("noise_pr", "si.similarity"), HasSubstr("an option of si, which is not in use"));
   EXPECT_THAT(with("noise_pr", "st.similarty"), HasSubstr("similarity"));
   EXPECT_THAT(with("repeats", "x") + with("levels = [0.05, 1]", "levels = [0.05, 1]\nrepeats = 0"),
               HasSubstr("repeats"));
@@ -96,13 +103,51 @@ TEST(Specification, AnOptionIsSweptLevelByLevel) {
   const Experiment experiment = parse_experiment("x.toml", testing::replaced(kGood, "noise_pr", "st.similarity"));
   EXPECT_EQ(experiment.sweep, Sweep::Option);
   const OptionOverrides expected = {{"similarity", "0.05"}};
-  EXPECT_EQ(method_options(experiment, "st", experiment.info.levels[0]), expected);
-  EXPECT_EQ(method_options(experiment, "gc", experiment.info.levels[0]).count("similarity"), 0u);
+  EXPECT_EQ(options_at(experiment, "st", experiment.info.levels[0]), expected);
+  EXPECT_EQ(options_at(experiment, "gc", experiment.info.levels[0]).count("similarity"), 0u);
+}
+
+TEST(Specification, AnOptionOfADetectorIsSweptToo) {
+  const std::string text = testing::replaced(testing::replaced(kGood, "noise_pr", "shot.radius_pr"), "0.05", "10");
+  const Experiment experiment = parse_experiment("x.toml", text);
+  const MatchSettings matching = matching_at(experiment, experiment.info.levels[0]);
+  EXPECT_EQ(matching.options, (OptionsByName{{"harris", {{"radius_pr", "2"}}}, {"shot", {{"radius_pr", "10"}}}}));
+  EXPECT_THAT(error_of(testing::replaced(text, "shot.radius_pr", "harris-mesh.radius_pr")), HasSubstr("not in use"));
+}
+
+TEST(Specification, AChoiceIsSweptByItsWords) {
+  const std::string text =
+      testing::replaced(testing::replaced(kGood, "noise_pr", "detector"), "[0.05, 1]", "[\"harris\", \"uniform\"]");
+  const Experiment experiment = parse_experiment("x.toml", text);
+  EXPECT_EQ(experiment.sweep, Sweep::Choice);
+  ASSERT_EQ(experiment.info.levels.size(), 2u);
+  EXPECT_EQ(experiment.info.levels[1].label, "uniform");
+  const MatchSettings matching = matching_at(experiment, experiment.info.levels[1]);
+  EXPECT_EQ(matching.detector, "uniform");
+  EXPECT_TRUE(matching.options.empty()) << "harris is not in use at this level";
+  EXPECT_THAT(error_of(testing::replaced(text, "\"uniform\"", "\"sift\"")), HasSubstr("expected harris|"));
+  const std::string forms =
+      testing::replaced(testing::replaced(kGood, "noise_pr", "gc.cluster"), "[0.05, 1]", "[\"star\", \"clique\"]");
+  const Experiment words = parse_experiment("x.toml", forms);
+  EXPECT_EQ(options_at(words, "gc", words.info.levels[0]).at("cluster"), "star");
+}
+
+TEST(Specification, OptionsOfTheCommandLineComeLast) {
+  Experiment experiment = parse_experiment("x.toml", kGood);
+  override_options(experiment, {{"gc", {{"tolerance_pr", "7"}}}, {"shot", {{"radius_pr", "9"}}}});
+  EXPECT_EQ(options_at(experiment, "gc", experiment.info.levels[0]).at("tolerance_pr"), "7");
+  EXPECT_EQ(matching_at(experiment, experiment.info.levels[0]).options.at("shot").at("radius_pr"), "9");
+  for (const OptionsByName& bad :
+       {OptionsByName{{"ransac", {{"iterations", "5"}}}}, {{"gc", {{"tolerance_pr", "-1"}}}}})
+    EXPECT_THROW(override_options(experiment, bad), InvalidInput);
+  Experiment swept = parse_experiment("x.toml", testing::replaced(kGood, "noise_pr", "st.similarity"));
+  EXPECT_THROW(override_options(swept, {{"st", {{"similarity", "0.5"}}}}), InvalidInput);
 }
 
 TEST(Specification, TheProgramCarriesThePapersExperiments) {
-  EXPECT_THAT(built_in_experiments(), ElementsAre("clutter", "density", "matches", "noise", "occlusion", "overlap",
-                                                  "threshold", "time", "tuning-consistency", "tuning-spectral"));
+  EXPECT_THAT(built_in_experiments(),
+              ElementsAre("clutter", "density", "detectors", "detectors-fpfh", "matches", "noise", "occlusion",
+                          "overlap", "threshold", "time", "tuning-consistency", "tuning-spectral"));
   std::string figures;
   for (const std::string& name : built_in_experiments()) {
     const Experiment experiment = read_experiment(name);
@@ -117,7 +162,8 @@ TEST(Specification, TheProgramCarriesThePapersExperiments) {
   EXPECT_EQ(read_experiment("noise").info.levels.size(), 9u);
   EXPECT_EQ(read_experiment("threshold").info.levels.size(), 10u);
   EXPECT_EQ(read_experiment("matches").info.levels.front().label, "<500");
-  EXPECT_EQ(read_experiment("matches").keypoint_radii_pr.size(), 9u);
+  EXPECT_EQ(read_experiment("matches").varied, "harris.radius_pr");
+  EXPECT_EQ(read_experiment("matches").varied_values.size(), 9u);
   EXPECT_THAT(io_error_of([] { read_experiment("nose"); }), HasSubstr("did you mean 'noise'?"));
 }
 

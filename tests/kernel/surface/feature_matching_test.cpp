@@ -173,8 +173,8 @@ TEST(MakeCorrespondences, RowsFollowTheSourceKeypoints) {
 TEST(MakeCorrespondences, NoDescriptorsGiveAnEmptyTable) {
   const Mesh mesh{Points::Random(5, 3), Triangles(0, 3)};
   Descriptors none, one;
-  none.features = Eigen::MatrixXd::Zero(kShotSize, 0);
-  one.features = features(kShotSize, 1, 15);
+  none.features = Eigen::MatrixXd::Zero(352, 0);
+  one.features = features(352, 1, 15);
   one.vertices = {3};
   one.frames = {Eigen::Matrix3d::Identity()};
   EXPECT_EQ(make_correspondences({mesh, none}, {mesh, one}, 1).size(), 0);

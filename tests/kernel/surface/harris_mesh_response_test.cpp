@@ -35,8 +35,8 @@ TEST(HarrisMeshResponse, AgreesWithTheReference) {
   for (const Mesh& mesh : {testing::bumpy_sphere(3, 1), testing::bumpy_sphere(4, 2), testing::icosphere(3),
                            noisy_grid(3), noisy_grid(4)}) {
     const double resolution = point_resolution(mesh.vertices);
-    for (const char* neighborhood : kNeighborhoods) {
-      SCOPED_TRACE(neighborhood);
+    for (const MeshNeighborhood neighborhood : kNeighborhoods) {
+      SCOPED_TRACE(choice_text(neighborhood));
       const HarrisMeshOptions options = options_of(neighborhood);
       const Eigen::VectorXd expected = testing::reference_harris_mesh_response(mesh, resolution, options);
       expect_close(harris_mesh_response(mesh, resolution, options), expected);
@@ -48,13 +48,13 @@ TEST(HarrisMeshResponse, AgreesWithTheReference) {
 TEST(HarrisMeshResponse, AgreesWithTheReferenceForAnyReach) {
   const Mesh mesh = noisy_grid(5);
   for (int step = 1; step <= 4; ++step) {
-    HarrisMeshOptions options = options_of("rings");
+    HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
     options.rings = step;
     expect_close(harris_mesh_response(mesh, 1, options), testing::reference_harris_mesh_response(mesh, 1, options));
-    options.neighborhood = "ball";
+    options.neighborhood = MeshNeighborhood::Ball;
     options.radius_pr = 0.9 * step;
     expect_close(harris_mesh_response(mesh, 1, options), testing::reference_harris_mesh_response(mesh, 1, options));
-    options.neighborhood = "adaptive";
+    options.neighborhood = MeshNeighborhood::Adaptive;
     options.extent = 0.03 * step;
     options.k = 0.06 * step - 0.01;
     expect_close(harris_mesh_response(mesh, 1, options), testing::reference_harris_mesh_response(mesh, 1, options));
@@ -62,14 +62,14 @@ TEST(HarrisMeshResponse, AgreesWithTheReferenceForAnyReach) {
 }
 
 TEST(HarrisMeshResponse, IsZeroOnAPlane) {
-  for (const char* neighborhood : kNeighborhoods) {
+  for (const MeshNeighborhood neighborhood : kNeighborhoods) {
     Mesh mesh = testing::grid(12, 12);
     mesh = move_mesh(mesh, random_motion(mesh, 1));
     HarrisMeshOptions options = options_of(neighborhood);
     options.extent = 0.1;
     const Eigen::VectorXd response = harris_mesh_response(mesh, 1, options);
     EXPECT_EQ(count_absent(response), 0);
-    EXPECT_LT(response.cwiseAbs().maxCoeff(), 1e-40) << neighborhood;
+    EXPECT_LT(response.cwiseAbs().maxCoeff(), 1e-40) << choice_text(neighborhood);
     options.fraction = 1;
     EXPECT_THAT(detect_harris_mesh(mesh, 1, options).vertices, IsEmpty());
   }
@@ -82,17 +82,17 @@ TEST(HarrisMeshResponse, OfAQuadraticPatchIsKnown) {
     const auto squared_length = [a = a, b = b](double x, double y) {
       return x * x + y * y + std::pow(a * x * x + b * y * y, 2);
     };
-    HarrisMeshOptions options = options_of("rings");
+    HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
     // The farthest of two rings is across two diagonals; of a ball of radius 1.02 it lies on one of the axes.
-    for (const char* neighborhood : {"rings", "ball"}) {
+    for (const MeshNeighborhood neighborhood : {MeshNeighborhood::Rings, MeshNeighborhood::Ball}) {
       options.neighborhood = neighborhood;
       options.radius_pr = 1.02;
-      const bool rings = neighborhood == std::string("rings");
+      const bool rings = neighborhood == MeshNeighborhood::Rings;
       const double squared_reach = rings ? squared_length(1, 1) : std::max(squared_length(1, 0), squared_length(0, 1));
       const double p1 = 4 * a * a * squared_reach, p3 = 4 * b * b * squared_reach;  // squared
       const double expected = 4 * p1 * p3 - options.k * std::pow(2 * p1 + 2 * p3, 2);
       const double found = harris_mesh_response(mesh, 1, options)(mesh.vertices.rows() / 2);
-      EXPECT_NEAR(found, expected, 1e-12 * std::abs(expected)) << neighborhood << " " << a << " " << b;
+      EXPECT_NEAR(found, expected, 1e-12 * std::abs(expected)) << choice_text(neighborhood) << " " << a << " " << b;
     }
   }
 }
@@ -105,7 +105,7 @@ TEST(HarrisMeshResponse, OfACylinderIsMinusKTimesTheSquaredTrace) {
     const double turn = angle * mesh.vertices(row, 0);
     mesh.vertices.row(row) << radius * std::sin(turn), mesh.vertices(row, 1), radius * std::cos(turn);
   }
-  HarrisMeshOptions options = options_of("rings");
+  HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
   options.rings = 1;
   const double width = radius * std::sin(angle), rise = radius * (1 - std::cos(angle));
   const double reach = std::sqrt(width * width + rise * rise + 1);
@@ -119,7 +119,7 @@ TEST(HarrisMeshResponse, OfACylinderIsMinusKTimesTheSquaredTrace) {
 
 TEST(HarrisMeshResponse, IsAbsentWithoutAPatch) {
   // The corners of a grid: 3 or 4 vertices within one ring, 4 or 5 at its sides; 7 inside.
-  HarrisMeshOptions options = options_of("rings");
+  HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
   options.rings = 1;
   const Mesh rough = noisy_grid(6);
   const Eigen::VectorXd response = harris_mesh_response(rough, 1, options);
@@ -138,7 +138,7 @@ TEST(HarrisMeshResponse, IsAbsentWithoutAPatch) {
 
 TEST(HarrisMeshResponse, IsAbsentWithoutADirectionOfLeastVariance) {
   // The whole of a sphere, and of one drawn out along z: all directions across have one variance. Flattened, z has less.
-  HarrisMeshOptions options = options_of("rings");
+  HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
   options.rings = 99;
   for (const double stretch : {1.0, 3.0, 0.5}) {
     Mesh mesh = testing::icosphere(2);

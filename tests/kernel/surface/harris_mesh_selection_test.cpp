@@ -54,7 +54,7 @@ TEST(SelectHarrisMesh, FractionIsOfTheVerticesAndAtMostTheCandidates) {
 TEST(SelectHarrisMesh, ClusteringKeepsTheBestOfWhatIsNear) {
   const std::vector<std::pair<int, double>> given = {{0, 1}, {2, 3}, {4, 2}, {14, 4}, {20, 0.5}, {22, 0.5}};
   HarrisMeshOptions options;
-  options.selection = "clustering";
+  options.selection = MeshSelection::Clustering;
   const auto keep = [&](double distance) {
     options.separation = distance / std::sqrt(32.0);
     return selected(given, options, 6);
@@ -74,7 +74,7 @@ TEST(SelectHarrisMesh, EqualDistanceIsNotFarther) {
   response(0) = 2;
   response(3) = 1;
   HarrisMeshOptions options;
-  options.selection = "clustering";
+  options.selection = MeshSelection::Clustering;
   const double diagonal = bounding_box(mesh.vertices).diagonal();
   options.separation = 3 / diagonal;
   ASSERT_GE(options.separation * diagonal, 3);

@@ -36,12 +36,12 @@ TEST(HarrisMesh, AgreesWithTheReference) {
   int found_by_all = 0;
   for (const Mesh& mesh : {testing::bumpy_sphere(4, 1), testing::bumpy_sphere(4, 2), noisy_grid(8)}) {
     const double resolution = point_resolution(mesh.vertices);
-    for (const char* neighborhood : kNeighborhoods)
-      for (const char* selection : kSelections) {
+    for (const MeshNeighborhood neighborhood : kNeighborhoods)
+      for (const MeshSelection selection : kSelections) {
         const HarrisMeshOptions options = options_of(neighborhood, selection);
         const Keypoints found = detect_harris_mesh(mesh, resolution, options);
         const Keypoints expected = testing::reference_harris_mesh(mesh, resolution, options);
-        EXPECT_EQ(found.vertices, expected.vertices) << neighborhood << " " << selection;
+        EXPECT_EQ(found.vertices, expected.vertices) << choice_text(neighborhood) << " " << choice_text(selection);
         EXPECT_EQ(found.candidates, expected.candidates);
         EXPECT_LT(static_cast<int>(found.vertices.size()), found.candidates);
         found_by_all += static_cast<int>(found.vertices.size());
@@ -54,8 +54,8 @@ TEST(HarrisMesh, ScaleByAPowerOfTwoChangesNotOneBit) {
   const Mesh mesh = testing::bumpy_sphere(4, 10);
   const double resolution = point_resolution(mesh.vertices);
   for (const double scale : {1024.0, 1 / 1048576.0})
-    for (const char* neighborhood : kNeighborhoods)
-      for (const char* selection : kSelections) {
+    for (const MeshNeighborhood neighborhood : kNeighborhoods)
+      for (const MeshSelection selection : kSelections) {
         const HarrisMeshOptions options = options_of(neighborhood, selection);
         const Mesh scaled{mesh.vertices * scale, mesh.triangles};
         expect_identical(harris_mesh_response(scaled, resolution * scale, options),
@@ -70,7 +70,7 @@ TEST(HarrisMesh, RigidMotionAndAnyScaleChangeNothing) {
     const Mesh mesh = testing::bumpy_sphere(4, seed);
     Mesh moved = move_mesh(mesh, random_motion(mesh, seed));
     const double resolution = point_resolution(mesh.vertices);
-    for (const char* neighborhood : kNeighborhoods) {
+    for (const MeshNeighborhood neighborhood : kNeighborhoods) {
       HarrisMeshOptions options = options_of(neighborhood);
       // The box of a turned mesh is another one: the same length along the edges is another share of it.
       const double extent = options.extent * bounding_box(mesh.vertices).diagonal();
@@ -91,8 +91,8 @@ TEST(HarrisMesh, RenumberedVerticesGiveTheSameKeypointsToTheLastBit) {
     const Indices old_row = shuffled_rows(mesh.vertices.rows(), 15);
     Mesh other = renumbered(mesh, old_row);
     other.triangles = other.triangles(shuffled_rows(mesh.triangles.rows(), 16), Eigen::all).eval();
-    for (const char* neighborhood : kNeighborhoods)
-      for (const char* selection : kSelections) {
+    for (const MeshNeighborhood neighborhood : kNeighborhoods)
+      for (const MeshSelection selection : kSelections) {
         const HarrisMeshOptions options = options_of(neighborhood, selection);
         const Eigen::VectorXd expected = harris_mesh_response(mesh, resolution, options);
         expect_identical(harris_mesh_response(other, resolution, options), expected(old_row));
@@ -112,8 +112,8 @@ TEST(HarrisMesh, OddMeshesGoThrough) {
     for (int row = 0; row < 12; ++row)  // some places twice
       mesh.vertices.row(row) = row % 4 == 3 ? mesh.vertices.row(row - 1).eval() : random.direction().transpose().eval();
     for (int& corner : mesh.triangles.reshaped()) corner = static_cast<int>(random.below(12));
-    for (const char* neighborhood : kNeighborhoods)
-      for (const char* selection : kSelections) {
+    for (const MeshNeighborhood neighborhood : kNeighborhoods)
+      for (const MeshSelection selection : kSelections) {
         HarrisMeshOptions options = options_of(neighborhood, selection);
         options.radius_pr = 1.5;
         options.fraction = 1;
@@ -136,7 +136,7 @@ TEST(HarrisMesh, WhatJoinsNothingChangesNothing) {
   odd.triangles.conservativeResize(faces + 4, 3);
   odd.triangles.bottomRows(4) << 9, 9, 200, 5, static_cast<int>(count), 77, 5, static_cast<int>(count),
       static_cast<int>(count) + 1, mesh.triangles(0, 0), mesh.triangles(0, 1), 300;
-  const HarrisMeshOptions options = options_of("rings");
+  const HarrisMeshOptions options = options_of(MeshNeighborhood::Rings);
   const Eigen::VectorXd response = harris_mesh_response(odd, 1, options);
   expect_identical(response.head(count), harris_mesh_response(mesh, 1, options));
   EXPECT_EQ(count_absent(response), 3);
@@ -144,9 +144,9 @@ TEST(HarrisMesh, WhatJoinsNothingChangesNothing) {
 
 TEST(HarrisMesh, OfNothingButDegenerateFacesThereIsNone) {
   Mesh mesh{Points::Ones(50, 3), Triangles::Zero(10, 3)};
-  for (const char* neighborhood : kNeighborhoods) {
+  for (const MeshNeighborhood neighborhood : kNeighborhoods) {
     EXPECT_EQ(count_absent(harris_mesh_response(mesh, 1, options_of(neighborhood))), 50);
-    EXPECT_THAT(detect_harris_mesh(mesh, 1, options_of(neighborhood, "clustering")).vertices, IsEmpty());
+    EXPECT_THAT(detect_harris_mesh(mesh, 1, options_of(neighborhood, MeshSelection::Clustering)).vertices, IsEmpty());
   }
 }
 
@@ -182,8 +182,6 @@ TEST(HarrisMesh, OptionsAreChecked) {
   }
   expect_refused([](HarrisMeshOptions& options) { options.fraction = 1.01; });
   expect_refused([](HarrisMeshOptions& options) { options.rings = 0; });
-  expect_refused([](HarrisMeshOptions& options) { options.neighborhood = "spatial"; });
-  expect_refused([](HarrisMeshOptions& options) { options.selection = ""; });
   for (const double bad : {-0.01, 0.25, std::nan("")})
     expect_refused([&](HarrisMeshOptions& options) { options.k = bad; });
 }

@@ -51,11 +51,11 @@ TEST(MatchFeatures, FeaturesThatAreNotFiniteAreRefusedAmongThousands) {
   const Eigen::MatrixXd good = features(40, 3000, 1);
   for (const double value : {std::nan(""), HUGE_VAL, -HUGE_VAL})
     for (const int column : {0, 1, 1777, 2999})
-      for (const char* matcher : {"exact", "flann"}) {
+      for (const Matcher matcher : {Matcher::Exact, Matcher::Flann}) {
         Eigen::MatrixXd bad = good;
         bad(39, column) = value;
-        EXPECT_THROW(match_features(bad, good, {matcher, false}), InvalidInput) << matcher << " " << column;
-        EXPECT_THROW(match_features(good, bad, {matcher, false}), InvalidInput) << matcher << " " << column;
+        EXPECT_THROW(match_features(bad, good, {matcher, false}), InvalidInput) << choice_text(matcher) << " " << column;
+        EXPECT_THROW(match_features(good, bad, {matcher, false}), InvalidInput) << choice_text(matcher) << " " << column;
       }
 }
 
@@ -63,7 +63,7 @@ TEST(MutualMatches, AreThoseThatBothSidesWant) {
   for (const auto& [sources, targets] : {std::pair(80, 120), std::pair(120, 80), std::pair(1, 30), std::pair(30, 1)}) {
     const Eigen::MatrixXd source = features(12, sources, 1), target = features(12, targets, 2);
     const FeatureMatches all = match_features(source, target), back = match_features(target, source);
-    const FeatureMatches mutual = match_features(source, target, {"exact", true});
+    const FeatureMatches mutual = match_features(source, target, {Matcher::Exact, true});
     Indices expected;
     for (int row = 0; row < sources; ++row)
       if (back.nearest[static_cast<std::size_t>(all.nearest[static_cast<std::size_t>(row)])] == row)
@@ -88,8 +88,8 @@ TEST(MutualMatches, AreThoseThatBothSidesWant) {
 
 TEST(MutualMatches, AreTheSameFromTheOtherSide) {
   const Eigen::MatrixXd source = features(20, 90, 3), target = features(20, 110, 4);
-  const FeatureMatches there = match_features(source, target, {"exact", true}),
-                       back = match_features(target, source, {"exact", true});
+  const FeatureMatches there = match_features(source, target, {Matcher::Exact, true}),
+                       back = match_features(target, source, {Matcher::Exact, true});
   std::vector<std::pair<int, int>> pairs, turned;
   for (std::size_t i = 0; i < there.source.size(); ++i) pairs.emplace_back(there.source[i], there.nearest[i]);
   for (std::size_t i = 0; i < back.source.size(); ++i) turned.emplace_back(back.nearest[i], back.source[i]);
@@ -99,7 +99,7 @@ TEST(MutualMatches, AreTheSameFromTheOtherSide) {
 
 TEST(MutualMatches, OfEqualsTheLowerOnesFindEachOther) {
   const Eigen::MatrixXd one = features(20, 1, 5);
-  const FeatureMatches found = match_features(one.replicate(1, 4), one.replicate(1, 3), {"exact", true});
+  const FeatureMatches found = match_features(one.replicate(1, 4), one.replicate(1, 3), {Matcher::Exact, true});
   EXPECT_THAT(found.source, ElementsAre(0));
   EXPECT_THAT(found.nearest, ElementsAre(0));
 }
@@ -113,7 +113,7 @@ TEST(MutualMatches, ReachTheTable) {
   target.features << 1, 0;
   for (int i = 0; i < 3; ++i) source.frames.push_back((i + 1) * LocalReferenceFrame::Identity());
   for (int i = 0; i < 2; ++i) target.frames.push_back((i + 7) * LocalReferenceFrame::Identity());
-  const CorrespondenceSet matches = make_correspondences({mesh, source}, {mesh, target}, 1, {"exact", true});
+  const CorrespondenceSet matches = make_correspondences({mesh, source}, {mesh, target}, 1, {Matcher::Exact, true});
   EXPECT_THAT(matches.source_keypoints, ElementsAre(8, 3));
   EXPECT_THAT(matches.target_keypoints, ElementsAre(2, 7));
   EXPECT_EQ(matches.source_frames[1](0, 0), 2);
@@ -125,7 +125,8 @@ TEST(MutualMatches, ReachTheTable) {
 
 TEST(FlannMatches, FindNearlyAllAndMeasureThemExactly) {
   const Eigen::MatrixXd source = features(352, 400, 6), target = partners_of(source, 0.05, 7);
-  const FeatureMatches exact = match_features(source, target), found = match_features(source, target, {"flann", false});
+  const FeatureMatches exact = match_features(source, target),
+                       found = match_features(source, target, {Matcher::Flann, false});
   EXPECT_EQ(found.source, exact.source);
   int right = 0;
   for (std::size_t i = 0; i < 400; ++i) {
@@ -141,18 +142,18 @@ TEST(FlannMatches, FindNearlyAllAndMeasureThemExactly) {
 
 TEST(FlannMatches, TakePartInMutualOnes) {
   const Eigen::MatrixXd source = features(60, 100, 8), target = partners_of(source, 0.02, 9);
-  const FeatureMatches found = match_features(source, target, {"flann", true});
+  const FeatureMatches found = match_features(source, target, {Matcher::Flann, true});
   EXPECT_GE(found.source.size(), 90u);
   EXPECT_TRUE(std::is_sorted(found.source.begin(), found.source.end()));
   EXPECT_EQ(found.nearest.size(), found.source.size());
 }
 
 TEST(FlannMatches, FewFeaturesAreEnough) {
-  const FeatureMatches one = match_features(features(20, 4, 10), features(20, 1, 11), {"flann", false});
+  const FeatureMatches one = match_features(features(20, 4, 10), features(20, 1, 11), {Matcher::Flann, false});
   EXPECT_THAT(one.nearest, ElementsAre(0, 0, 0, 0));
   EXPECT_EQ(one.second_distance, Eigen::VectorXd(Eigen::VectorXd::Zero(4)));
   for (const auto& [sources, targets] : {std::pair(0, 3), std::pair(3, 0), std::pair(0, 0)})
-    for (const char* matcher : {"exact", "flann"})
+    for (const Matcher matcher : {Matcher::Exact, Matcher::Flann})
       for (const bool mutual : {false, true})
         EXPECT_THAT(
             match_features(Eigen::MatrixXd::Zero(5, sources), Eigen::MatrixXd::Zero(5, targets), {matcher, mutual})
@@ -161,15 +162,11 @@ TEST(FlannMatches, FewFeaturesAreEnough) {
 }
 
 TEST(MatchingOptions, OtherMatchersAreRefused) {
-  for (const char* bad : {"", "Exact", "kdtree", "flann "}) {
-    const std::string refused = testing::refusal_of([&] { MatchingOptions{bad, false}.validate(); });
-    EXPECT_THAT(refused, AllOf(HasSubstr("'" + std::string(bad) + "'"), HasSubstr("exact|flann")));
-    EXPECT_EQ(testing::refusal_of([&] {
-                match_features(features(5, 0, 1), features(5, 2, 2), {bad, false});
-              }),
-              refused);
-  }
-  EXPECT_NO_THROW(MatchingOptions().validate());
+  for (const char* bad : {"", "Exact", "kdtree", "flann "})
+    EXPECT_THAT(testing::refusal_of([&] {
+                  parse_options<MatchingOptions>({{"matcher", bad}}, "match");
+                }),
+                AllOf(HasSubstr("'" + std::string(bad) + "'"), HasSubstr("exact|flann")));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::vector<Mesh> some_meshes() {
 
 TEST(SameBits, AtEveryVectorLevel) {
   for (const Mesh& mesh : some_meshes())
-    for (const char* form : {"additive", "pcl", "product"}) {
+    for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
       const SurfaceStages expected = run_stages(mesh, one_by_one, form);
       EXPECT_GT(expected.descriptors.vertices.size(), 20u);
       for (const VectorLevel level : testing::available_levels()) {
@@ -81,7 +81,7 @@ TEST(SameBits, MatchesOnAnyThreadsAndAtEveryLevel) {
   const Eigen::MatrixXd target = run_stages(add_gaussian_noise(mesh, 0.002, 5)).descriptors.features;
   ASSERT_GT(source.cols(), 20);
   for (const bool mutual : {false, true}) {
-    const MatchingOptions options{"exact", mutual};
+    const MatchingOptions options{Matcher::Exact, mutual};
     const FeatureMatches expected = match_features(source, target, options);
     const auto expect_same = [&](const FeatureMatches& found) {
       EXPECT_EQ(found.source, expected.source);

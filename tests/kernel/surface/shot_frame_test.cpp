@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using testing::support_of;
 
 /// The histogram of one neighbour at `place`, its normal at `cosine` to the z axis, in a frame along the axes.
 Eigen::VectorXd single(const Eigen::Vector3d& place, double cosine, double radius = 4,
-                       const std::string& form = "additive") {
+                       ShotForm form = ShotForm::Additive) {
   Support support;
   support.add(place, {std::sqrt(1 - cosine * cosine), 0, cosine});
   const auto histogram = shot_histogram(support, LocalReferenceFrame::Identity(), radius, form);
@@ -44,12 +44,12 @@ TEST(ShotHistogram, AgreesWithTheReference) {
         const Eigen::Vector3d point = mesh.vertices.row(row).transpose();
         const auto frame = testing::reference_shot_frame(mesh.vertices, point, radius);
         const Support support = support_of(mesh.vertices, normals, point, radius);
-        for (const char* form : {"additive", "pcl", "product"}) {
+        for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
           const auto found = shot_histogram(support, *frame, radius, form);
           const auto expected = testing::reference_shot_histogram(mesh.vertices, normals, point, *frame, radius, form);
           ASSERT_TRUE(found.has_value());
           ASSERT_EQ(found->size(), kShotSize);
-          EXPECT_LT((*found - *expected).cwiseAbs().maxCoeff(), 1e-9) << row << " " << form;
+          EXPECT_LT((*found - *expected).cwiseAbs().maxCoeff(), 1e-9) << row << " " << choice_text(form);
           EXPECT_NEAR(found->norm(), 1, 1e-12);
           EXPECT_GE(found->minCoeff(), 0);
         }
@@ -125,7 +125,7 @@ TEST(ShotHistogram, IsAbsentWithoutANormal) {
   const Points vertices = testing::icosphere(2).vertices;
   const Support support = support_of(vertices, Points::Zero(vertices.rows(), 3), {0, 0, 1}, 0.9);
   EXPECT_GT(support.count, 10);
-  for (const char* form : {"additive", "pcl", "product"}) {
+  for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
     EXPECT_FALSE(shot_histogram(support, LocalReferenceFrame::Identity(), 0.9, form).has_value());
     EXPECT_FALSE(shot_histogram(Support(), LocalReferenceFrame::Identity(), 0.9, form).has_value());
   }
@@ -151,7 +151,7 @@ TEST(ShotHistogram, PclWrapsTheCosineOfBinNine) {
   for (int step = -1000; step <= 1000; ++step) {
     const double cosine = step / 1000.0, position = 5 * (1 + cosine);
     const Eigen::VectorXd additive = single(polar(1, 45, 22.5), cosine),
-                          pcl = single(polar(1, 45, 22.5), cosine, 4, "pcl");
+                          pcl = single(polar(1, 45, 22.5), cosine, 4, ShotForm::PclBug);
     Eigen::VectorXd expected = additive;
     if (position > 9 && position < 9.5) {
       std::swap(expected(shot_bin(4, 0, 1, 10)), expected(shot_bin(4, 0, 1, 0)));
@@ -163,7 +163,7 @@ TEST(ShotHistogram, PclWrapsTheCosineOfBinNine) {
 
 TEST(ShotHistogram, ProductSharesMultiply) {
   // 0.1 off in cosine, 0.2 in radius, 0.3 in elevation, 0.4 in azimuth.
-  const Eigen::VectorXd histogram = single(polar(1.4, 45 + 27, 67.5 + 18), 0.22, 4, "product");
+  const Eigen::VectorXd histogram = single(polar(1.4, 45 + 27, 67.5 + 18), 0.22, 4, ShotForm::Product);
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(kShotSize);
   for (const auto& [azimuth, a] : {std::pair(5, 0.6), std::pair(6, 0.4)})
     for (const auto& [shell, r] : {std::pair(0, 0.8), std::pair(1, 0.2)})
@@ -183,8 +183,9 @@ TEST(ShotHistogram, ProductVotesAddUpToTheirNumber) {
     normals.row(row) = random.direction().transpose();
   }
   const auto frame = LocalReferenceFrame::Identity();
-  const auto found = shot_histogram(support_of(vertices, normals, {0, 0, 0}, 4), frame, 4, "product");
-  const Eigen::VectorXd votes = testing::reference_shot_votes(vertices, normals, {0, 0, 0}, frame, 4, "product");
+  const auto found = shot_histogram(support_of(vertices, normals, {0, 0, 0}, 4), frame, 4, ShotForm::Product);
+  const Eigen::VectorXd votes =
+      testing::reference_shot_votes(vertices, normals, {0, 0, 0}, frame, 4, ShotForm::Product);
   EXPECT_NEAR(votes.sum(), 500, 1e-9);
   EXPECT_NEAR(found.value().sum() * votes.norm(), 500, 1e-9);
 }
@@ -193,8 +194,9 @@ TEST(ShotHistogram, OnTheZAxisThereIsNoAzimuthToShare) {
   for (const double z : {1.0, -1.0, 3.0}) {
     Eigen::VectorXd expected = Eigen::VectorXd::Zero(kShotSize);
     expected(shot_bin(0, std::abs(z) > 2, z > 0, 6)) = 1;
-    for (const char* form : {"additive", "pcl", "product"})
-      EXPECT_LT((single({0, 0, z}, 0.2, 4, form) - expected).cwiseAbs().maxCoeff(), 1e-12) << z << " " << form;
+    for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product})
+      EXPECT_LT((single({0, 0, z}, 0.2, 4, form) - expected).cwiseAbs().maxCoeff(), 1e-12)
+          << z << " " << choice_text(form);
   }
 }
 

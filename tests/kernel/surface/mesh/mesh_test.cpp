@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "kernel/error.h"
-#include "kernel/surface/descriptor.h"
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/harris.h"
 #include "kernel/surface/mesh/topology.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/resolution.h"
+#include "kernel/surface/shot.h"
 #include "tests/support/meshes.h"
 #include "tests/support/tables.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/descriptor.h"
+#include "kernel/surface/shot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "kernel/error.h"
+#include "kernel/surface/harris.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/resolution.h"
@@ -128,10 +129,11 @@ TEST(DescribeShot, TheRimIsInsideButForPcl) {
   vertices.middleRows(1, 12) = near;
   for (int row = 13; row < 25; ++row) vertices(row, row % 3) = row % 2 == 0 ? 2 : -2;
   const Points normals = Eigen::RowVector3d(0, 0, 1).replicate(25, 1);
-  for (const char* form : {"additive", "pcl", "product"}) {
-    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 24, form}).vertices.size(), form[1] != 'c') << form;
-    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 12, form}).vertices.size(), 1u) << form;
-    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 25, form}).vertices.size(), 0u) << form;
+  for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 24, form}).vertices.size(), form != ShotForm::PclBug)
+        << choice_text(form);
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 12, form}).vertices.size(), 1u) << choice_text(form);
+    EXPECT_EQ(describe_shot(vertices, normals, {0}, 1, {2, 25, form}).vertices.size(), 0u) << choice_text(form);
   }
 }
 
@@ -140,13 +142,14 @@ TEST(DescribeShot, EveryFormAgreesWithTheReference) {
   const Points normals = estimate_normals(mesh);
   const double resolution = point_resolution(mesh.vertices);
   const Indices rows = some_rows(mesh, 61);
-  for (const char* form : {"additive", "pcl", "product"}) {
+  for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
     const Descriptors found = describe_shot(mesh.vertices, normals, rows, resolution, {15, 10, form});
     ASSERT_EQ(found.vertices, rows);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const auto expected = testing::reference_shot_histogram(mesh.vertices, normals, vertex_of(mesh, rows[i]),
                                                               found.frames[i], 15 * resolution, form);
-      EXPECT_LT((found.features.col(static_cast<Eigen::Index>(i)) - *expected).cwiseAbs().maxCoeff(), 1e-9) << form;
+      EXPECT_LT((found.features.col(static_cast<Eigen::Index>(i)) - *expected).cwiseAbs().maxCoeff(), 1e-9)
+          << choice_text(form);
     }
   }
 }
@@ -159,6 +162,39 @@ TEST(DescribeShot, NormalsAndKeypointsMustBelongToTheVertices) {
   EXPECT_THROW(describe_shot(vertices, vertices, {-1}, 0.1), InvalidInput);
 }
 
+TEST(AddShotFrames, AreThoseOfTheDescriptor) {
+  const Mesh mesh = testing::bumpy_sphere(4, 1);
+  const double resolution = point_resolution(mesh.vertices);
+  const Indices rows = detect_harris(mesh.vertices, resolution).vertices;
+  const Descriptors expected = describe(mesh, rows, resolution);
+  ASSERT_EQ(expected.vertices, rows);
+  Descriptors found;
+  found.vertices = rows;
+  found.features = Eigen::MatrixXd::Random(5, static_cast<Eigen::Index>(rows.size()));
+  const Eigen::MatrixXd features = found.features;
+  add_shot_frames(mesh.vertices, resolution, {}, found);
+  EXPECT_EQ(found.vertices, rows);
+  EXPECT_TRUE(found.frames == expected.frames);
+  EXPECT_EQ(found.features, features);
+}
+
+TEST(AddShotFrames, AKeypointWithoutAFrameIsDropped) {
+  Mesh mesh = testing::bumpy_sphere(3, 1);
+  mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, Eigen::NoChange);
+  const auto alone = static_cast<int>(mesh.vertices.rows()) - 1;
+  mesh.vertices.row(alone).setConstant(100);
+  Descriptors found;
+  found.vertices = {3, alone, 5};
+  found.features = Eigen::MatrixXd::Identity(3, 3);
+  add_shot_frames(mesh.vertices, 0.1, {}, found);
+  EXPECT_EQ(found.vertices, (Indices{3, 5}));
+  EXPECT_EQ(found.frames.size(), 2u);
+  EXPECT_EQ(found.dropped_no_frame, 1);
+  EXPECT_EQ(found.features.col(1), Eigen::Vector3d::UnitZ());
+  found.vertices = {0, alone + 1};
+  EXPECT_THROW(add_shot_frames(mesh.vertices, 0.1, {}, found), InvalidInput);
+}
+
 TEST(DescribeShot, OptionsAreChecked) {
   const Mesh mesh = testing::icosphere(1);
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
@@ -166,9 +202,9 @@ TEST(DescribeShot, OptionsAreChecked) {
     EXPECT_THROW(describe(mesh, {0}, 1, {bad}), InvalidInput);
   }
   EXPECT_THROW(describe(mesh, {0}, 1, {15, -1}), InvalidInput);
-  for (const char* bad : {"", "Additive", "shot", "pcl "})
-    EXPECT_THROW(describe(mesh, {0}, 1, {15, 10, bad}), InvalidInput);
-  for (const char* good : {"additive", "pcl", "product"}) EXPECT_NO_THROW(ShotOptions({15, 10, good}).validate());
+  for (const char* bad : {"", "Additive", "shot", "pcl"})
+    EXPECT_THROW(parse_options<ShotOptions>({{"form", bad}}, "shot"), InvalidInput);
+  EXPECT_EQ(parse_options<ShotOptions>({{"form", "pcl-bug"}}, "shot").form, ShotForm::PclBug);
 }
 
 }  // namespace

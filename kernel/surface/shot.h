@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
-#include <string>
 
 #include "kernel/local_reference_frame.h"
+#include "kernel/options.h"
 #include "kernel/parallel.h"
+#include "kernel/surface/descriptors.h"
 #include "kernel/surface/mesh/mesh.h"
-#include "kernel/vectorized.h"
+#include "kernel/surface/support.h"
 
 namespace corral {
 
 /// Length of a SHOT descriptor: 8 azimuth x 2 radial x 2 elevation volumes with 11 cosine bins each.
 constexpr int kShotSize = 352;
 
+/// How a vertex shares its vote between bins: see shot_histogram.
+enum class ShotForm { Additive, Product, PclBug };
+constexpr std::array<const char*, 3> choice_names(ShotForm) { return {"additive", "product", "pcl-bug"}; }
+
 struct ShotOptions {
-  double radius_pr = 15;          ///< of the support
-  int minimum_support = 10;       ///< vertices other than the keypoint that the support must hold
-  std::string form = "additive";  ///< additive | pcl | product: see shot_histogram
+  double radius_pr = 15;
+  int minimum_support = 10;
+  ShotForm form = ShotForm::Additive;
 
-  /// Throws InvalidInput.
-  void validate() const;
-};
-
-/// The support of a point: the vertices around it, column by column, without those at the point itself.
-struct Support {
-  AlignedColumn x, y, z;     ///< from the point, mesh units
-  AlignedColumn distance;    ///< > 0
-  AlignedColumn nx, ny, nz;  ///< unit normals; zero where there is none
-  int count = 0;
-
-  /// Adds a vertex; at distance 0 it is passed over.
-  void add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
+  template <class Self, class Visitor>
+  static void visit_fields(Self& self, Visitor&& visit) {
+    visit(OptionField{"radius_pr", "pr", "15", "radius of the support and of the frame", above(0)}, self.radius_pr);
+    visit(OptionField{"minimum_support", "", "", "vertices other than the keypoint that the support must hold",
+                      at_least(0)},
+          self.minimum_support);
+    visit(OptionField{"form", "", "", "shares of a vote between bins: added, multiplied, or added as PCL does"},
+          self.form);
+  }
 };
 
 /// The repeatable frame of the surface around a point (rows x, y, z).
@@ -51,25 +53,15 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 /// centre of the own bin, up to a half; beyond the last centre of an axis that ends the share is lost.
 ///   additive  the four shares are added one axis at a time, and the own bin gets the rest of each
 ///   product   the shares multiply, over up to 16 bins
-///   pcl       additive, with the slip of that library: what bin 9 of the cosine gives to bin 10 goes to bin 0 (and
+///   pcl-bug   additive, with an error of PCL: what bin 9 of the cosine gives to bin 10 goes to bin 0 (and
 ///             describe_shot() leaves vertices at exactly R out of the support)
 /// Order     bin = ((azimuth * 2 + shell) * 2 + above) * 11 + cosine; azimuth sectors from -180 degrees counter-clockwise,
 ///           shell 1 beyond R / 2, above 1 for z > 0. A sector holds its upper border. On the z axis, where there is no
 ///           azimuth, the vote is in sector 0: that of the other three axes, or all of it (product).
 /// Source    [tombari2010shot]; additive shares, L2 norm and order as in the library that [yang2017evaluation] ran.
-/// Departs   From that library: the cosine ends with its last bin (`pcl` wraps), and double decides what float does there.
+/// Departs   From that library: the cosine ends with its last bin (`pcl-bug` wraps), and double decides what float does there.
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
-                                              const std::string& form = "additive");
-
-/// Descriptors of those keypoints that have one.
-struct Descriptors {
-  Indices vertices;               ///< vertex of each column, in the order of the keypoints
-  LocalReferenceFrames frames;    ///< frame of each column
-  Eigen::MatrixXd features;       ///< 352 x N, one column per keypoint, unit length
-  int dropped_small_support = 0;  ///< keypoints with too few vertices around them
-  int dropped_no_frame = 0;       ///< keypoints without a frame
-  int dropped_no_histogram = 0;   ///< keypoints with an empty histogram
-};
+                                              ShotForm form = ShotForm::Additive);
 
 /// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part). Any number of threads, and any
 /// numbering of the vertices, gives the same bits.
@@ -77,5 +69,10 @@ struct Descriptors {
 ///           the vertices.
 Descriptors describe_shot(const Points& vertices, const Points& normals, const Indices& keypoints, double resolution,
                           const ShotOptions& options = {}, const ParallelFor& parallel = one_by_one);
+
+/// Gives the frames of SHOT to descriptors that have none: the same bits as those of describe_shot. A keypoint without a frame
+/// is dropped and counted. Throws InvalidInput if an option, the resolution or a keypoint is out of range.
+void add_shot_frames(const Points& vertices, double resolution, const ShotOptions& options, Descriptors& descriptors,
+                     const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

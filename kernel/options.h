@@ -26,17 +26,20 @@
 
 namespace corral {
 
-/// Accepted values of a number: low (excluded if `open`) .. high, and finite.
+/// Accepted values of a number: low (excluded if `open`) .. high (excluded if `open_end`), and finite.
 struct OptionRange {
   double low = 0;
   double high = std::numeric_limits<double>::max();
-  bool open = false;
-  bool contains(double value) const { return (open ? value > low : value >= low) && value <= high; }
+  bool open = false, open_end = false;
+  bool contains(double value) const {
+    return (open ? value > low : value >= low) && (open_end ? value < high : value <= high);
+  }
 };
 inline OptionRange above(double low) { return {low, std::numeric_limits<double>::max(), true}; }
 inline OptionRange at_least(double low) { return {low, std::numeric_limits<double>::max(), false}; }
 inline OptionRange within(double low, double high) { return {low, high, false}; }
 inline OptionRange above_up_to(double low, double high) { return {low, high, true}; }
+inline OptionRange at_least_below(double low, double high) { return {low, high, false, true}; }
 
 /// What a field means to a reader.
 struct OptionField {
@@ -54,6 +57,9 @@ struct OptionValue {
 
 /// Changes asked for by name: name -> text.
 using OptionOverrides = std::map<std::string, std::string>;
+
+/// The same of several algorithms, by their names.
+using OptionsByName = std::map<std::string, OptionOverrides>;
 
 namespace detail {
 
@@ -117,6 +123,12 @@ bool parse_value(const std::string& text, Value& value) {
 }
 
 }  // namespace detail
+
+/// The name of an enum's value.
+template <class Enum>
+std::string choice_text(Enum value) {
+  return detail::value_text(value);
+}
 
 /// Throws InvalidInput naming the first field that is out of its range (NaN is out of every range).
 template <class Options>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "kernel/surface/keypoints.h"
+#include "kernel/surface/harris.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/options.h"
+#include "kernel/options.h"
 
 namespace corral::detail {
 
@@ -7,7 +7,7 @@ std::string accepted_text(const OptionRange& range, bool whole_number) {
   const std::string kind = whole_number ? "a whole number" : "a finite number";
   const std::string low = (range.open ? " above " : " of at least ") + to_text(range.low);
   if (range.high == std::numeric_limits<double>::max()) return kind + low;
-  return kind + low + " and at most " + to_text(range.high);
+  return kind + low + (range.open_end ? " and below " : " and at most ") + to_text(range.high);
 }
 
 std::string accepted_text(const std::vector<std::string>& choices) {

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/command_options.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "apps/runtime/memory.h"
+#include "io/toml_file.h"
+#include "kernel/error.h"
+#include "kernel/number_text.h"
+
+namespace corral {
+namespace {
+
+/// What is called, with InvalidInput as UsageError.
+template <class Call>
+auto as_usage(const Call& call) -> decltype(call()) {
+  try {
+    return call();
+  } catch (const InvalidInput& error) {
+    throw UsageError(error.what());
+  }
+}
+
+/// One flag or option for each field of an options struct.
+template <class Options>
+void add_fields(CLI::App& command, Options& options, const std::string& group) {
+  Options::visit_fields(options, [&](const OptionField& field, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    const std::string flag = "--" + std::string(field.name);
+    std::string meaning = field.meaning;
+    meaning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning[0])));
+    if constexpr (std::is_same_v<Value, bool>) {
+      command.add_flag(flag, value, meaning)->group(group);
+    } else {
+      const std::string accepted = detail::accepted_values<Value>(field);
+      const auto parse = [&value, flag, accepted](const std::string& text) {
+        if (!detail::parse_value(text, value))
+          throw CLI::ValidationError(flag, "found '" + text + "', expected " + accepted);
+      };
+      command.add_option_function<std::string>(flag, parse, meaning)
+          ->type_name(accepted)
+          ->default_str(detail::value_text(value))
+          ->group(group);
+    }
+  });
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names;
+  for (const Grouper& entry : groupers()) names.push_back(entry.name);
+  for (const Detector& entry : detectors()) names.push_back(entry.name);
+  for (const Descriptor& entry : descriptors()) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+void add_match_options(CLI::App& command, MatchSettings& settings) {
+  const auto option = [&](const std::string& name, auto& value, const std::string& text) {
+    return command.add_option(name, value, text)->capture_default_str()->group("Matching");
+  };
+  option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units");
+  option("--detector", settings.detector, "Keypoints; 'corral detectors' has their options")
+      ->type_name(names_of(detectors()));
+  option("--descriptor", settings.descriptor, "Features; 'corral descriptors' has their options")
+      ->type_name(names_of(descriptors()));
+  add_fields(command, settings, "Matching");
+  option("--sensor", settings.sensor, "Where the sensor stood, in mesh units")
+      ->delimiter(',')
+      ->expected(3)
+      ->default_str("0,0,0")
+      ->type_name("X,Y,Z");
+  option("--threads", settings.threads, "0: as many as there are; results do not depend on it");
+}
+
+void check_usage(const MatchSettings& settings) {
+  as_usage([&] { settings.validate(); });
+}
+
+void add_set_option(CLI::App& command, std::vector<std::string>& set) {
+  command
+      .add_option("--set", set,
+                  "An option of a grouper, detector or descriptor, such as gc.tolerance_pr=2 or harris.radius_pr=4; "
+                  "'corral groupers', 'detectors' and 'descriptors' list them")
+      ->type_name("NAME.OPTION=VALUE")
+      ->expected(1)
+      ->take_all();
+}
+
+OptionsByName parse_set(const std::vector<std::string>& set) {
+  const std::vector<std::string> known = all_names();
+  OptionsByName options;
+  for (const std::string& text : set) {
+    const std::size_t equals = text.find('='), dot = text.find('.');
+    if (equals == std::string::npos || dot == 0 || dot == std::string::npos || dot + 1 >= equals)
+      throw UsageError("--set " + text + ": expected NAME.OPTION=VALUE, such as gc.tolerance_pr=2");
+    const std::string name = text.substr(0, dot);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      const std::string nearest = nearest_name(name, known);
+      throw UsageError("--set " + text + ": no grouper, detector or descriptor is called '" + name + "'" +
+                       (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+    }
+    if (!options[name].emplace(text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)).second)
+      throw UsageError("--set " + text + ": this option is set twice");
+  }
+  return options;
+}
+
+void require_in_use(const OptionsByName& options, const std::vector<std::string>& in_use) {
+  std::string list;
+  for (const std::string& name : in_use) list += (list.empty() ? "" : ", ") + name;
+  for (const auto& [name, overrides] : options)
+    if (std::find(in_use.begin(), in_use.end(), name) == in_use.end())
+      throw UsageError("--set " + name + "." + overrides.begin()->first + ": " + name +
+                       " is not in use here, expected an option of " + list);
+}
+
+OptionsByName surface_part(const OptionsByName& options) {
+  OptionsByName part;
+  for (const auto& [name, overrides] : options)
+    if (look_up(detectors(), name) || look_up(descriptors(), name)) part[name] = overrides;
+  return part;
+}
+
+ConfiguredGrouper configure_grouper(const std::string& name, const OptionsByName& options) {
+  return as_usage([&] {
+    const auto found = options.find(name);
+    return find_grouper(name).configure(found == options.end() ? OptionOverrides() : found->second);
+  });
+}
+
+void check_threshold(double threshold_pr) {
+  if (!(threshold_pr >= 0) || !std::isfinite(threshold_pr))
+    throw UsageError("--threshold-pr: expected a finite length of at least 0");
+}
+
+Eigen::Vector3d parse_vector(const std::string& option, const std::string& text) {
+  Eigen::Vector3d vector;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    const std::optional<double> number =
+        end == std::string::npos ? std::nullopt : parse_double(std::string_view(text).substr(begin, end - begin));
+    if (!number || !std::isfinite(*number))
+      throw UsageError(option + ": found '" + text + "', expected three finite numbers x,y,z");
+    vector(axis) = *number;
+    begin = end + 1;
+  }
+  return vector;
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "0: as many as there are; results do not depend on it")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+}
+
+void add_sensor_options(CLI::App& command, SensorSettings& settings) {
+  auto* sensor = command.add_option("--sensor", settings.sensor, "Position of the sensor, mesh units")
+                     ->type_name("X,Y,Z")
+                     ->capture_default_str();
+  command
+      .add_option("--direction", settings.direction,
+                  "The way the sensor looks, if it is far away or its position unknown")
+      ->type_name("X,Y,Z")
+      ->excludes(sensor);
+}
+
+ViewOptions view_options(const SensorSettings& settings) {
+  ViewOptions options;
+  options.sensor = parse_vector("--sensor", settings.sensor);
+  if (settings.direction) {
+    options.direction = parse_vector("--direction", *settings.direction);
+    if (options.direction->isZero(0)) throw UsageError("--direction: expected a vector that is not zero");
+  }
+  return options;
+}
+
+void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
+  bytes = static_cast<std::uint64_t>(half_of_memory());
+  command
+      .add_option("--memory-limit", bytes,
+                  "Most memory that a method may hold, such as 500MB or 2GB; one that would need more is not asked "
+                  "(default: half of the machine)")
+      ->transform(CLI::AsSizeValue(true));
+}
+
+}  // namespace corral

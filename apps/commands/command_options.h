@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/commands/commands.h"
+#include "apps/pair/match_settings.h"
+#include "grouping/registry.h"
+#include "kernel/surface/scan/view_triangulation.h"
+
+// Options that several subcommands have. Whatever is wrong with them is a UsageError.
+namespace corral {
+
+/// All that decides how two surfaces are matched, but --set.
+void add_match_options(CLI::App& command, MatchSettings& settings);
+void check_usage(const MatchSettings& settings);
+
+/// --set NAME.OPTION=VALUE, as typed.
+void add_set_option(CLI::App& command, std::vector<std::string>& set);
+
+/// --set, by the name of a grouper, detector or descriptor.
+OptionsByName parse_set(const std::vector<std::string>& set);
+
+/// Refuses options of a name that is not among those in use.
+void require_in_use(const OptionsByName& options, const std::vector<std::string>& in_use);
+
+/// Those of the options that belong to a detector or a descriptor.
+OptionsByName surface_part(const OptionsByName& options);
+
+/// A grouper with its part of the options.
+ConfiguredGrouper configure_grouper(const std::string& name, const OptionsByName& options);
+
+void check_threshold(double threshold_pr);
+
+/// The text of an option as a point or direction "x,y,z".
+Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
+
+/// --threads, checked where workers() are made of it.
+void add_threads(CLI::App& command, int& threads);
+
+/// --sensor and --direction, as typed.
+struct SensorSettings {
+  std::string sensor = "0,0,0";
+  std::optional<std::string> direction;
+};
+void add_sensor_options(CLI::App& command, SensorSettings& settings);
+ViewOptions view_options(const SensorSettings& settings);
+
+/// --memory-limit, in bytes; half of the machine unless it is given.
+void add_memory_limit(CLI::App& command, std::uint64_t& bytes);
+
+}  // namespace corral
