@@ -27,12 +27,6 @@ Number inlier_ratio(const R& record) {
   return static_cast<double>(*record.true_matches) / *record.matches;
 }
 
-/// How much of its table a method keeps.
-Number selected_share(const R& record) {
-  if (!record.selected || !record.matches || *record.matches == 0) return std::nullopt;
-  return static_cast<double>(*record.selected) / *record.matches;
-}
-
 /// Whether a pose registers the pair, absent without a pose.
 template <PoseScores R::*Pose>
 Number success(const R& record) {
@@ -70,7 +64,6 @@ const std::vector<Measure> kOfCalls = {
      kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},
     {"dense_success_5pr",   "dense success",   "", 3, 1, Larger, {}, success<&R::dense>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, dense"},
-    {"selected_share",      "selected share",  "", 3, 1, Smaller, {}, selected_share, Zero, Mean, kOnPage},
 };
 
 const std::vector<PoseMeasure> kOfPoses = {

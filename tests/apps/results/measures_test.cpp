@@ -60,9 +60,6 @@ TEST(Measures, AreReadOffARecord) {
   EXPECT_EQ(measure("precision_nonempty").of(record), 0.25);
   EXPECT_EQ(measure("inlier_ratio").of(record), 0.5);
   EXPECT_EQ(measure("time_ms").of(record), 3);
-  EXPECT_FALSE(measure("selected_share").of(record));
-  record.selected = 2;
-  EXPECT_EQ(measure("selected_share").of(record), 0.25);
   EXPECT_EQ(measure("refined_mean_error_pr").of(record), 5);
   EXPECT_EQ(measure("success_5pr").of(record), 1);        // at most 5 pr
   EXPECT_EQ(measure("dense_success_5pr").of(record), 0);  // a pose without a mean error: over no point

@@ -17,6 +17,7 @@ using testing::put_text;
 using testing::ScratchFolder;
 
 TEST(StudyRecord, ReadsBackWhatItWrote) {
+  const MethodStatus failed{MethodState::Failed, "\"so\", it said"};
   StudyRecord full{"noise",
                    "b3r",
                    "[0,0.5)",
@@ -24,7 +25,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    "gc",
                    2,
                    0.25,
-                   {MethodState::Failed, "\"so\", it said"},
+                   failed,
                    10,
                    5,
                    4,
