@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 
 #include "io/file.h"
 #include "kernel/error.h"
@@ -21,15 +22,18 @@ std::string ending_of(const std::string& path) {
 }
 
 using Parser = Mesh (*)(const std::string& path, std::string_view content);
+struct MeshFormat {
+  const char* ending;
+  Parser parse;
+};
+constexpr MeshFormat kFormats[] = {{".ply", parse_ply}, {".off", parse_off}, {".obj", parse_obj},
+                                   {".stl", parse_stl}, {".xyz", parse_xyz}, {".pcd", parse_pcd}};
+
 Parser parser_of(const std::string& path) {
   const std::string ending = ending_of(path);
-  return ending == ".ply"   ? parse_ply
-         : ending == ".off" ? parse_off
-         : ending == ".obj" ? parse_obj
-         : ending == ".stl" ? parse_stl
-         : ending == ".xyz" ? parse_xyz
-         : ending == ".pcd" ? parse_pcd
-                            : nullptr;
+  for (const MeshFormat& format : kFormats)
+    if (ending == format.ending) return format.parse;
+  return nullptr;
 }
 
 std::string ply_header(const std::string& format, const Mesh& mesh) {
@@ -57,13 +61,21 @@ Triangles TriangleBuilder::build() const {
       corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
 }
 
+std::string mesh_endings() {
+  std::string text;
+  for (const MeshFormat& format : kFormats) {
+    const bool is_last = &format == std::end(kFormats) - 1;
+    text += (text.empty() ? "" : is_last ? " or " : ", ") + std::string(format.ending);
+  }
+  return text;
+}
+
 bool is_mesh_name(const std::string& path) { return parser_of(path) != nullptr; }
 
 Mesh read_mesh(const std::string& path) {
   const Parser parser = parser_of(path);
   const std::string content = read_file(path);
-  if (!parser)
-    throw IoError(path, "", "unknown mesh format, expected a name that ends in " + std::string(kMeshEndings));
+  if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in " + mesh_endings());
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
   return parser(path, content);
 }

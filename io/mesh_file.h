@@ -9,8 +9,8 @@
 
 namespace corral {
 
-/// The endings of the names that read_mesh takes, in words for messages.
-constexpr std::string_view kMeshEndings = ".ply, .off, .obj, .stl, .xyz or .pcd";
+/// The endings of the names that read_mesh accepts, for messages: ".ply, .off, ... or .pcd".
+std::string mesh_endings();
 
 /// Whether read_mesh knows the ending of the name.
 bool is_mesh_name(const std::string& path);

@@ -119,7 +119,7 @@ int info(const Settings& settings) {
 void add_info(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("info", "What a mesh is: counts, components, boundary, resolution, warnings");
   auto settings = std::make_shared<Settings>();
-  command->add_option("mesh", settings->meshes, "Mesh or point cloud (" + std::string(kMeshEndings) + ")")
+  command->add_option("mesh", settings->meshes, "Mesh or point cloud (" + mesh_endings() + ")")
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", settings->json, "A JSON array, one object per mesh");

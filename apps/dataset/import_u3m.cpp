@@ -41,10 +41,9 @@ struct TruePair {
 };
 
 bool is_view_name(const fs::path& path) {
-  static const std::set<std::string> endings = {".ply", ".off", ".obj", ".stl", ".xyz", ".pcd"};
   const std::string stem = path.stem().string(), ending = path.extension().string();
   const bool is_numbered = !stem.empty() && std::isdigit(static_cast<unsigned char>(stem.back()));
-  return endings.count(ending) > 0 || (ending == ".txt" && is_numbered);  // a list of points, not a page of text
+  return is_mesh_name(path.string()) || (ending == ".txt" && is_numbered);  // a list of points, not a page of text
 }
 
 /// "T-rex" of "T-rex_view001", "bun" of "bun045".
