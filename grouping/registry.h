@@ -13,10 +13,10 @@ namespace corral {
 struct ConfiguredGrouper {
   GroupFunction group;
   std::vector<OptionValue> options;
-  std::function<double(int matches)> working_memory = {};  ///< bytes at most (see grouper.h); empty if nobody knows
+  std::function<double(int matches)> working_memory = {};  ///< peak bytes (see grouper.h); empty if unknown
 };
 
-/// One method as the command line, the tests and the README know it.
+/// A grouper as the command line, the tests and the documents list it.
 struct Grouper {
   std::string name;                                                    ///< "gc"
   std::string title;                                                   ///< "Geometric consistency (GC)"
@@ -26,7 +26,7 @@ struct Grouper {
   std::function<ConfiguredGrouper(const OptionOverrides&)> configure;  ///< throws InvalidInput as parse_options does
 };
 
-/// Every method, in the order of the paper.
+/// Every grouper, in the order of the paper.
 const std::vector<Grouper>& groupers();
 
 /// Throws InvalidInput for an unknown name, listing the known ones.

@@ -14,7 +14,7 @@ struct BoundingBox {
   double longest_side() const { return (high - low).maxCoeff(); }
 };
 
-/// Of no points: a box of no size at the origin. The points must be finite.
+/// For no points: a box of size zero at the origin. The points must be finite.
 BoundingBox bounding_box(const Points& points);
 
 }  // namespace corral

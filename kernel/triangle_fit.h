@@ -61,10 +61,10 @@ struct FlatTriangle {
 template <class Lanes>
 struct LaneMotion {
   LanePoint<Lanes> rows[3], translation;
-  Lanes usable;  ///< 1, or 0 for a degenerate triangle, whose motion means nothing
+  Lanes usable;  ///< 1, or 0 for a degenerate triangle, whose motion is meaningless
 };
 
-/// Least-squares rigid motion of one triangle to another, the answer of fit_rigid_transform() in closed form.
+/// Least-squares rigid motion of one triangle to another: the result of fit_rigid_transform() in closed form.
 ///
 /// The best motion lays plane on plane, normal on normal, centroid on centroid. In the planes, with corners P_i and Q_i
 /// about their centroids and M = sum P_i Q_i^T, what is left is one angle: (cos, sin) ~ (M11 + M22, M12 - M21). Since

@@ -16,7 +16,7 @@ constexpr int kShotSize = 352;
 
 struct ShotOptions {
   double radius_pr = 15;          ///< of the support
-  int minimum_support = 10;       ///< vertices other than the keypoint that the support must hold
+  int minimum_support = 10;       ///< fewest vertices in the support, the keypoint excluded
   std::string form = "additive";  ///< additive | pcl | product: see shot_histogram
 
   /// Throws InvalidInput.
@@ -30,7 +30,7 @@ struct Support {
   AlignedColumn nx, ny, nz;  ///< unit normals; zero where there is none
   int count = 0;
 
-  /// Adds a vertex; at distance 0 it is passed over.
+  /// Adds a vertex, unless it is at distance 0.
   void add(const Eigen::Vector3d& offset, const Eigen::Vector3d& normal);
 };
 
@@ -41,15 +41,15 @@ struct Support {
 /// x and z are the eigenvectors of the largest and the smallest eigenvalue, turned to the side where at least half of the
 /// support lies; on an exact tie to the side of most of the five vertices around the median distance. y = z cross x.
 /// Source    [tombari2010shot].
-/// Returns   absent for fewer than 5 vertices, or where all lie so that no frame is finite.
+/// Returns   absent for fewer than 5 vertices, or where no finite frame exists.
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
 /// The SHOT histogram of a support, unit length; absent if no vertex with a normal is in it.
 ///
-/// For each vertex the cosine between its normal and the frame's z axis goes into the volume that it lies in. Along each of
-/// the four axes (cosine, radius, elevation, azimuth) the bin beside gets a share that grows with the distance from the
-/// centre of the own bin, up to a half; beyond the last centre of an axis that ends the share is lost.
-///   additive  the four shares are added one axis at a time, and the own bin gets the rest of each
+/// For each vertex the cosine between its normal and the frame's z axis is counted in the volume that the vertex lies in.
+/// Along each of the four axes (cosine, radius, elevation, azimuth) the neighbouring bin gets a share that grows with the
+/// distance from the centre of the vertex's own bin, up to a half; beyond the last centre of a bounded axis the share is lost.
+///   additive  the four shares are added one axis at a time, and the vertex's own bin gets the rest of each
 ///   product   the shares multiply, over up to 16 bins
 ///   pcl       additive, with the slip of that library: what bin 9 of the cosine gives to bin 10 goes to bin 0 (and
 ///             describe_shot() leaves vertices at exactly R out of the support)
@@ -71,7 +71,7 @@ struct Descriptors {
   int dropped_no_histogram = 0;   ///< keypoints with an empty histogram
 };
 
-/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part). Any number of threads, and any
+/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows are ignored). Any number of threads, and any
 /// numbering of the vertices, gives the same bits.
 /// Throws    InvalidInput if an option, the resolution or a keypoint is out of range, or the normals are not as many as
 ///           the vertices.

@@ -6,17 +6,17 @@
 
 namespace corral {
 
-/// Where a surface is described.
+/// The vertices at which a surface is described.
 struct Keypoints {
   Indices vertices;    ///< ascending
-  int candidates = 0;  ///< local maxima that they were selected from
+  int candidates = 0;  ///< local maxima from which they were selected
 };
 
 struct HarrisOptions {
   double radius_pr = 3;  ///< of the normals, the response and the non-maxima suppression
 };
 
-/// Harris 3D keypoints: vertices where the normals around vary in all three directions.
+/// Harris 3D keypoints: vertices around which the normals vary in all three directions.
 ///
 ///   A_i = mean over |x_j - x_i| <= rho of n_j n_j^T        response_i = det A_i, in [0, 1/27]
 ///
@@ -36,8 +36,8 @@ Keypoints detect_harris(const Points& vertices, double resolution, const HarrisO
 /// The response of every vertex, V, for rho in mesh units; 0 where a vertex has no normal around it.
 Eigen::VectorXd harris_response(const Points& vertices, double radius, const ParallelFor& parallel = one_by_one);
 
-/// Uniform sampling, a control without any choice: of the vertices in each cube of a lattice with this spacing the one
-/// nearest to the middle, ties to the lower index. The lattice starts at the lowest corner of the bounding box.
+/// Uniform sampling, a control that ignores the shape: in each cube of a lattice with this spacing, the vertex nearest to
+/// its centre; ties go to the lower index. The lattice starts at the lowest corner of the bounding box.
 /// Throws    InvalidInput if the spacing or `resolution` is not finite and positive.
 Keypoints detect_uniform(const Points& vertices, double resolution, double spacing_pr);
 

@@ -9,8 +9,7 @@
 
 namespace corral {
 
-// What is nearest: the one place where distances of features are defined. Only sources include this, compiled without
-// contraction.
+// The one place where the distance of two features is defined. Only sources include this, compiled without contraction.
 
 /// The squared distance: rows in sixteen sums by row mod 16, the first eight and the last eight added, then lanes::sum.
 template <class Lanes>

@@ -11,8 +11,8 @@
 
 namespace corral {
 
-/// The source vertices that the two surfaces share: those whose true image has a target vertex within `threshold` (mesh
-/// units; the field takes 4 pr). Registration errors are averaged over them.
+/// The overlap: the source vertices whose true image has a target vertex within `threshold` (mesh units; 4 pr in the field).
+/// Registration errors are averaged over them.
 ///
 /// Source    the evaluation programs behind [yang2017evaluation]'s successors (RMSE on U3M).
 Points overlap_points(const Points& source, const PointIndex& target_index, const RigidTransform& target_from_source,
@@ -28,7 +28,7 @@ double overlap_share(const Points& source, const Points& target, const RigidTran
 /// Area of all triangles in squared mesh units.
 double surface_area(const Mesh& mesh);
 
-/// How little of a model a scene shows, and how much else; shares of 1.
+/// How much of a model a scene hides, and how much of the scene is something else; shares of 1.
 struct Visibility {
   double occlusion, clutter;
 };

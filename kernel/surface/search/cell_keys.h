@@ -13,7 +13,7 @@ namespace corral {
 
 // The cells of a PointGrid as numbers. Only sources include this.
 
-constexpr double kMostWhole = 0x1p51;  ///< whole numbers that doubles hold, and some to spare
+constexpr double kMostWhole = 0x1p51;  ///< whole numbers up to here are exact in double, with a margin
 
 /// Rounded down; for numbers from 0 to kMostWhole.
 template <class Lanes>

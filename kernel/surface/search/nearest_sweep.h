@@ -13,9 +13,9 @@ namespace corral {
 // Finding the nearest neighbours of every point with a grid. Only sources include this.
 
 /// Calls attempt(slot, first, last, are_new, sure_squared, lanes) for every slot with ranges of slots that hold all points
-/// within a squared distance, and whether they are others than in the call before of this thread; `attempt` says whether
-/// that was enough. If it was not it is called again with more cells, and at last
-/// for a few with all slots. The slots for which that would take long (far apart, or crowded) are returned, ascending.
+/// within a squared distance, and whether they differ from those of this thread's previous call; `attempt` returns whether
+/// that was enough. If not, it is called again with more cells, and for a few slots at last with all slots. The slots for
+/// which that would take too long (isolated or crowded ones) are returned, ascending.
 class NearestSweep {
  public:
   explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}
@@ -81,8 +81,8 @@ class NearestSweep {
   const AlignedColumn from_faces_;  // by slot
 };
 
-/// point_resolution() of points whose neighbours were looked at (in resolution.cpp). `squares`: by slot, the squared distance
-/// to the nearest point in another place; infinite where it is not known.
+/// point_resolution() of points whose neighbours are known (in resolution.cpp). `squares`: by slot, the squared distance to
+/// the nearest point at another place; infinite where it is not known.
 double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares);
 
 }  // namespace corral
