@@ -129,7 +129,7 @@ TEST(MakeB3r, GoesOnWhereItWasInterrupted) {
     fs::remove(place / ("set/" + std::string(name)));
   const Outcome half = place.corral("dataset check set");
   EXPECT_EQ(half.status, 3);
-  EXPECT_THAT(half.err, HasSubstr("set: is half made"));
+  EXPECT_THAT(half.err, HasSubstr("set: is unfinished"));
   place.put("set/scenes/ball-1_noise0.1.ply", "kept");
   place.put("set/scenes/odd-one-1_noise0.2.ply.part-aB3dE6", "what a killed write left");
   ASSERT_EQ(place.corral(line).status, 0);
@@ -185,7 +185,7 @@ TEST(MakeB3r, WhereItCannotWriteItSaysSoOnceAndLeavesNoSet) {
       EXPECT_NO_THROW(parse_ply(name, content));
     }
   }
-  EXPECT_THAT(place.corral("dataset check full").err, HasSubstr("half made"));
+  EXPECT_THAT(place.corral("dataset check full").err, HasSubstr("unfinished"));
   EXPECT_EQ(place.corral(line + "full").status, 0) << "with room again it goes on";
   EXPECT_EQ(place.corral("dataset check full").status, 0);
 }
