@@ -46,7 +46,7 @@ CORRAL_INLINE float run_chains(const float* starts, float factor, float term) {
 
 double multiply_add_peak() {
   volatile float factor = 0.5F, term = 1,
-                 result = 0;  // volatile: nothing is computed beforehand, and nothing for nobody
+                 result = 0;  // volatile: nothing is precomputed or optimised away
   std::vector<float> starts(16 * 16);
   std::iota(starts.begin(), starts.end(), 0.0F);
   double best = 0;
