@@ -13,8 +13,8 @@ namespace corral {
 ///
 ///   M_ij = [ r(i,j) >= similarity ],  M_ii = 1,   r the rigidity ratio
 ///
-/// Eight columns share a byte. A product looks each byte up in tables of the sums of its numbers ("four Russians"). Sums are
-/// whole numbers and therefore exact: a number is a multiple of a power of two, so small that no sum reaches 2^31.
+/// Eight columns share a byte. A product looks up each byte in tables of partial sums (the method of four Russians). Sums are
+/// whole numbers and therefore exact: each number is a multiple of a power of two, small enough that no sum reaches 2^31.
 class CompatibilityGraph : public GraphMatrix {
  public:
   CompatibilityGraph(const CorrespondenceSet& matches, double similarity);

@@ -14,7 +14,7 @@ namespace corral {
 //
 // A grouper decides by comparing doubles: whether two distances differ by less than a tolerance, whether their ratio
 // reaches a similarity, whether a residual is below a tolerance. Its loops over all pairs, or over all poses and matches,
-// first ask a filter that computes in float and knows how wrong it can be. A filter has two answers:
+// first use a filter that computes in float with a known error bound. A filter gives two answers:
 //
 //   possible   false only where the comparison of doubles is certainly false
 //   certain    true only where the comparison of doubles is certainly true
@@ -25,12 +25,12 @@ namespace corral {
 // The proof rests on one bound. A FilterTable holds the points in a unit in which no coordinate exceeds 1, each rounded
 // once: an error of at most u = 2^-24. A difference of two coordinates is then off by at most 4 u, a vector by 4 sqrt(3) u,
 // and its squared length by 3 u of itself more, however it is rounded. The square root of a squared float distance is
-// therefore within 13 u of the length, plus the rounding of the double distance, which is nothing beside it:
+// therefore within 13 u of the length, plus the rounding of the double distance, which is negligible:
 constexpr double kFilterDistanceError = 16 * 0x1p-24;
 
 /// The points of a table of matches as floats. Rows beyond the last, up to a whole number of lanes, are NaN: no
-/// comparison holds for them. Where floats cannot hold the extent, all points are 0, which every filter finds possible
-/// and not certain.
+/// comparison holds for them. Where floats cannot hold the extent, all points are 0, which is possible and not certain for
+/// every filter.
 class FilterTable {
  public:
   explicit FilterTable(const CorrespondenceSet& matches);
@@ -46,7 +46,7 @@ class FilterTable {
   const float* source(int axis) const { return source_[static_cast<std::size_t>(axis)].data(); }
   const float* target(int axis) const { return target_[static_cast<std::size_t>(axis)].data(); }
 
-  /// Takes a row out of all comparisons; `show` takes what this returned.
+  /// Excludes a row from all comparisons; `show` with the returned value includes it again.
   float hide(int row);
   void show(int row, float hidden) { source_[0][static_cast<std::size_t>(row)] = hidden; }
 
@@ -65,8 +65,8 @@ class FilterTable {
   std::array<FloatColumn, 3> source_, target_;
 };
 
-/// | d - d' | < tolerance for the distances of two rows on either side, in a unit of twice T: the tolerance, widened by what
-/// the points are off. In this unit, for the true lengths x, y of the floats, |x - y| < 1/2 implies F^2 <= x^2 + 1/16 with
+/// | d - d' | < tolerance for the distances of two rows on either side, in a unit of twice T: the tolerance, widened by the
+/// error of the points. In this unit, for the true lengths x, y of the floats, |x - y| < 1/2 implies F^2 <= x^2 + 1/16 with
 /// F = y^2 - x^2 - 1/4: F <= x because y^2 < (x + 1/2)^2, and -F <= x because y^2 > (x - 1/2)^2, unless x < 1/2; then
 /// -F <= x^2 + 1/4, whose square is x^2 + (x^2 - 1/4)^2.
 ///
@@ -82,7 +82,7 @@ class ConsistencyFilter {
   /// Bytes for so many rows.
   static double memory(int rows) { return 16.0 * sizeof(float) * padded(rows, kGroup); }
 
-  /// What a row brings to its comparisons with others.
+  /// What a row contributes to its comparisons with others.
   struct Row {
     float source[3], target[3];  ///< times -2
     float offset;                ///< of F: |q|^2 - |p|^2 - 1/4
@@ -103,7 +103,7 @@ class ConsistencyFilter {
   std::vector<Row> rows_;
 };
 
-/// min(d, d') / max(d, d') >= similarity, or > similarity: which of them is for the double to say.
+/// min(d, d') / max(d, d') >= similarity, or > similarity: which of the two is decided in double.
 ///
 /// With x <= y the lengths of floats, e their bound and s the similarity, it is certain if x >= s y + e (1 + s), and
 /// possible unless x + e (1 + s) < s y. Squared, with 2 y c <= h y^2 + c^2 / h for the mixed term, both are linear in x^2, y^2.

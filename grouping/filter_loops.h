@@ -14,7 +14,7 @@ namespace corral {
 /// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included.
 void count_consistent(const ConsistencyFilter& filter, int* counts);
 
-/// How many poses are looked at together.
+/// How many poses are evaluated together.
 constexpr int kPoseTile = 4;
 
 /// counts[k]: for how many rows the first component of the residual under pose k is possibly below the tolerance.
@@ -42,16 +42,16 @@ void count_up_to(const float* numbers, int count, const float (&limits)[kLimits]
 /// marks[i], padded: 1 where numbers[i] is in first .. last, else 0. Returns how many of `count` (padded) are below.
 int mark_between(const float* numbers, int count, float first, float last, std::uint8_t* marks);
 
-/// Some votes, as far as floats can tell.
+/// Votes, as far as floats decide them.
 struct FilteredVotes {
   int asked = 0, certain = 0, possible = 0;
 };
 
-/// A row asks the trusted rows (1, others 0) whose squared distance is below `limit` whether they agree with it.
+/// The votes on a row of the trusted rows (1, others 0) whose squared distance is below `limit`: rigid with it or not.
 FilteredVotes ask_near(const FilterTable& table, const SimilarityFilter& filter, int row, const float* squared,
                        float limit, const float* trusted);
 
-/// A row of `table` asks all of `voters` whether they agree with it and have a small residual under its pose.
+/// The votes on a row of `table` of all `voters`: rigid with it, and with a small residual under its pose, or not.
 FilteredVotes ask_voters(const FilterTable& voters, const SimilarityFilter& filter, const FilterTable& table, int row,
                          const PoseFilter& pose);
 

@@ -11,18 +11,18 @@
 
 namespace corral {
 
-/// What a grouper answers.
+/// The result of a grouper.
 struct GroupingResult {
   Indices selected;            ///< rows it keeps, strictly ascending; may be empty
-  std::vector<double> scores;  ///< one per match, larger is better; empty where the method scores no matches
-  std::optional<RigidTransform> target_from_source;  ///< the method's own pose; absent where it makes none
+  std::vector<double> scores;  ///< one per match, larger is better; empty if the grouper computes none
+  std::optional<RigidTransform> target_from_source;  ///< the grouper's own pose; absent if it estimates none
 };
 
-// Beside each method stands
+// With each grouper is declared
 //
-//   double working_memory(int matches, const <Method>Options& options);
+//   double working_memory(int matches, const <Grouper>Options& options);
 //
-// the most bytes that it will hold at a time for so many matches, the answer included and the table not.
+// its peak memory in bytes for this many matches, including the result and excluding the table.
 
 /// A grouper with its options bound: a pure function of the table.
 using GroupFunction = std::function<GroupingResult(const CorrespondenceSet&)>;

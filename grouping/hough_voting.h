@@ -30,8 +30,8 @@ struct HoughVotingOptions {
 ///
 ///   v_i = L_i (C - p_i)      g_i = L'_i^T v_i + p'_i      selected = { i : g_i in the fullest cell or its 6 face neighbours }
 ///
-/// pr5       selected are the votes that have a share in the cell with the largest sum of weights, no neighbours. The cells
-///           go on beyond the corner of the box: a vote near it shares with the cell below.
+/// pr5       selected are the votes with a share in the cell with the largest sum of weights, without its neighbours. The
+///           cells extend beyond the corner of the box: a vote near it has a share in the cell below.
 /// Source    [tombari2010hough]; form [yang2017evaluation], which prints R twice: the second is its transpose.
 /// Reads     source_points, target_points, source_frames, target_frames, resolution, source_centroid (default: the mean
 ///           of the source points).
@@ -39,9 +39,8 @@ struct HoughVotingOptions {
 /// Cost      O(M) time and memory, whatever the extent of the votes. Deterministic.
 /// Throws    InvalidInput: option out of range, column absent, ragged or non-finite.
 /// Departs   15 bins per axis after the authors' program (the paper gives no size). Ties go to the lowest cell in the order
-///           of x, then y, then z. An axis whose extent is rounding (at most 1e-6 pr, or 64 ulps of the largest coordinate)
-///           has one bin. A match with an invalid frame on either side has no
-///           vote and is not selected.
+///           of x, then y, then z. An axis whose extent is mere rounding (at most 1e-6 pr, or 64 ulps of the largest
+///           coordinate) has one bin. A match with an invalid frame on either side has no vote and is not selected.
 GroupingResult group_by_hough_voting(const CorrespondenceSet& matches, const HoughVotingOptions& options = {});
 double working_memory(int matches, const HoughVotingOptions& options);
 

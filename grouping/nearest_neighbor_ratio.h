@@ -8,7 +8,7 @@
 
 namespace corral {
 
-/// How the threshold of eq. (2) is read.
+/// How eq. (2) and its threshold are interpreted.
 enum class RatioRule {
   Lowe,     ///< d1/d2 <= threshold, as in the work that the paper takes the value from
   Literal,  ///< 1 - d1/d2 >= threshold, as printed

@@ -8,7 +8,7 @@
 
 namespace corral {
 
-/// How the two classes of scores are parted.
+/// How the two classes of scores are separated.
 enum class OtsuRule {
   Exact,    ///< every gap between neighbouring values is tried
   Bins100,  ///< histogram of 100 equal bins between the smallest and the largest score
@@ -31,8 +31,7 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// Throws    InvalidInput if a score is not finite.
 Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule);
 
-/// The most bytes that it holds for so many scores: the answer as it grows, and of the exact rule a sorted copy and the
-/// classes.
+/// Peak memory in bytes for this many scores: the result as it grows, and for the exact rule a sorted copy and the classes.
 constexpr double otsu_memory(int scores, OtsuRule rule) {
   return (rule == OtsuRule::Exact ? 72.0 : 16.0) * scores + 4096;
 }

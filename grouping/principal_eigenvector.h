@@ -16,14 +16,14 @@ class GraphMatrix {
   virtual int size() const = 0;
   /// to = M from. Both have the size of the matrix.
   virtual void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const = 0;
-  /// Rounds some numbers to as many digits as the fastest product has; then to = M numbers.
+  /// Rounds the numbers to the precision of the fastest product; then to = M numbers.
   virtual void round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const = 0;
   /// The number of positive entries of each row, and the sum of the squares of all entries.
   virtual Eigen::VectorXd degrees() const = 0;
   virtual double sum_of_squares() const = 0;
   /// column = M e_node.
   virtual void get_column(int node, Eigen::VectorXd& column) const = 0;
-  /// The rows and columns of some nodes, in that order.
+  /// The rows and columns of these nodes, in this order.
   virtual std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const = 0;
 };
 
@@ -54,23 +54,23 @@ class DenseGraph : public GraphMatrix {
 /// eigenvalues agree to 1e-9 relative: the part with the lowest index.
 ///
 /// Each part is solved by restarted Lanczos iteration with full orthogonalisation until |Mx - lambda x| <= 1e-12 lambda,
-/// or until rounding lets it fall no further. A matrix without a positive entry: zero.
+/// or until rounding prevents a further decrease. A matrix without a positive entry: zero.
 Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix);
 
 /// Some nodes of a graph, whose edges weigh at most 1.
 struct Subgraph {
   const GraphMatrix& matrix;
-  const Eigen::VectorXd& takes_part;  ///< 1 for the nodes that do, 0 for the others
-  const Eigen::VectorXd& degrees;     ///< numbers of positive entries between nodes that take part
-  double sum_of_squares;              ///< of these entries
+  const Eigen::VectorXd& takes_part;  ///< 1 for nodes of the subgraph, 0 for the others
+  const Eigen::VectorXd& degrees;     ///< number of positive entries of each node within the subgraph
+  double sum_of_squares;              ///< of the entries within the subgraph
 };
 
 /// The node of the largest entry in the principal eigenvector of a subgraph, the first of those that are within `tie` of
 /// it; or kUncertain where a few rounded products do not prove which one that is. `entries` is an approximation of the
-/// eigenvector to start from, zero where nobody takes part; on return a better one.
+/// eigenvector to start from, zero outside the subgraph; on return a better one.
 ///
-/// The proof needs no convergence. The squares of all eigenvalues add up to the squares of all entries, which bounds those
-/// behind the largest; so the residual of a vector y tells its angle to the eigenvector x. With M y = cos l x + sin M u, u a
+/// The proof needs no convergence. The squares of all eigenvalues add up to the squares of all entries, which bounds all but
+/// the largest; so the residual of a vector y bounds its angle to the eigenvector x. With M y = cos l x + sin M u, u a
 /// unit vector, entries i and j of M y are in the order of those of x if they differ by more than sin |row_i - row_j|. Nodes
 /// with equal rows have equal entries.
 int leading_entry(const Subgraph& graph, double tie, Eigen::VectorXd& entries);

@@ -18,7 +18,7 @@ struct RansacOptions {
     visit(OptionField{"tolerance_pr", "pr", "5", "residual below which a match agrees with a pose", above(0)},
           self.tolerance_pr);
     visit(OptionField{"seed", "", "", "start of the random stream", at_least(0)}, self.seed);
-    visit(OptionField{"confidence", "", "0", "stop once a triple of right matches is this probable; 0: never",
+    visit(OptionField{"confidence", "", "0", "stop once a triple of correct matches is this probable; 0: never",
                       within(0, 1)},
           self.confidence);
   }
@@ -35,7 +35,7 @@ struct RansacOptions {
 /// Cost      O(iterations * M) time, O(M) memory. Deterministic for a seed. A triple that cannot win any more is dropped
 ///           before all of its residuals are known (see filter.h); the winner is that of the plain loop.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
-/// Departs   A triple whose area is at most 1e-3 pr^2 on either side spends its iteration without a pose (the paper does
+/// Departs   A triple whose area is at most 1e-3 pr^2 on either side gives no pose but counts as an iteration (the paper does
 ///           not say). The first triple with the largest count wins. Fewer than 3 matches, or no triple with a match in
 ///           agreement: nothing selected, no pose.
 GroupingResult group_by_ransac(const CorrespondenceSet& matches, const RansacOptions& options = {});

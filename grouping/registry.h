@@ -13,9 +13,10 @@ namespace corral {
 struct ConfiguredGrouper {
   GroupFunction group;
   std::vector<OptionValue> options;
-  std::function<double(int matches)> working_memory = {};  ///< bytes at most (see grouper.h); empty if nobody knows
+  std::function<double(int matches)> working_memory = {};  ///< peak bytes (see grouper.h); empty if unknown
 };
 
+/// A grouper as the command line, the tests and the documents list it.
 using Grouper = TableEntry<ConfiguredGrouper>;
 
 /// Every grouper, in the order of the paper.

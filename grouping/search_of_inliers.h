@@ -25,7 +25,7 @@ struct SearchOfInliersOptions {
 
   template <class Self, class Visitor>
   static void visit_fields(Self& self, Visitor&& visit) {
-    visit(OptionField{"voters", "", "250", "neighbours asked locally, and matches asked globally (kappa)", at_least(1)},
+    visit(OptionField{"voters", "", "250", "number of local voters, and of global voters (kappa)", at_least(1)},
           self.voters);
     visit(OptionField{"similarity", "", "0.9", "rigidity ratio above which a voter agrees", within(0, 1)},
           self.similarity);

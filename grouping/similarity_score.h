@@ -16,7 +16,7 @@ struct SimilarityScoreOptions {
   }
 };
 
-/// Similarity score (SS): keeps the matches whose features are alike, the threshold found by Otsu's method.
+/// Similarity score (SS): keeps the matches whose features are similar, by a threshold found with Otsu's method.
 ///
 ///   s(c) = 1 - d1        selected = { c : s(c) >= Otsu(s) }
 ///

@@ -25,9 +25,9 @@ struct SpectralOptions {
 /// Spectral technique (ST): greedy choice by the principal eigenvector of the graph of compatible matches.
 ///
 ///   M_ij = [ r(i,j) >= similarity ],  M_ii = 1
-///   repeat   x = principal eigenvector of M over the matches alive;  accept i = argmax x;
+///   repeat   x = principal eigenvector of M over the remaining matches;  accept i = argmax x;
 ///            remove i and every j with r(i,j) < similarity
-///   until    nobody is alive, or max x <= 1e-9
+///   until    no match remains, or max x <= 1e-9
 ///
 /// once      x is computed for the full graph only.      weighted   M_ij = r(i,j) where r(i,j) >= similarity.
 /// Source    [leordeanu2005spectral]; form and value [yang2017evaluation], Table 1.
@@ -37,9 +37,9 @@ struct SpectralOptions {
 ///           that while it is renumbered. Deterministic.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
 /// Departs   The eigenvector is the converged one (see principal_eigenvector.h), not that of a fixed number of rounds; it is
-///           computed until it is certain which entry leads. Entries within 1e-9 of the maximum are ties: the lowest row.
-///           Conflict means incompatible (the paper leaves it open). Two equally heavy parts: the one with the lowest row
-///           first. No compatible pair: nothing.
+///           computed until it is certain which entry is the largest. Entries within 1e-9 of the maximum are ties: the lowest
+///           row wins. Conflict means incompatible (the paper leaves it open). Two parts with equal eigenvalues: the one with
+///           the lowest row first. No compatible pair: nothing is selected.
 GroupingResult group_by_spectral(const CorrespondenceSet& matches, const SpectralOptions& options = {});
 double working_memory(int matches, const SpectralOptions& options);
 

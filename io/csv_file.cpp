@@ -21,9 +21,9 @@ std::vector<std::string> split_cells(const LineReader& reader) {
     } else if (line[at] != '"') {
       cell += line[at];
     } else {
-      if (!cell.empty()) reader.fail("a quote inside a cell, expected it around the whole cell");
+      if (!cell.empty()) reader.fail("a quote inside a cell, expected quotes around the whole cell");
       while (true) {
-        if (++at >= line.size()) reader.fail("a quote that does not end");
+        if (++at >= line.size()) reader.fail("a quote without an end");
         if (line[at] != '"')
           cell += line[at];
         else if (at + 1 < line.size() && line[at + 1] == '"')
@@ -31,7 +31,7 @@ std::vector<std::string> split_cells(const LineReader& reader) {
         else
           break;
       }
-      if (at + 1 < line.size() && line[at + 1] != ',') reader.fail("text behind a closing quote, expected a comma");
+      if (at + 1 < line.size() && line[at + 1] != ',') reader.fail("text after a closing quote, expected a comma");
     }
   }
   return cells;
@@ -55,7 +55,7 @@ CsvTable parse_csv(const std::string& path, const std::string& text) {
   std::set<std::string> names;
   for (const std::string& name : table.header) {
     if (name.empty()) reader.fail("a column without a name");
-    if (!names.insert(name).second) reader.fail("the column " + quoted(name) + " stands twice");
+    if (!names.insert(name).second) reader.fail("the column " + quoted(name) + " occurs twice");
   }
   while (reader.next()) {
     table.rows.push_back(split_cells(reader));

@@ -14,11 +14,11 @@ struct CsvTable {
   int column(const std::string& name) const;  ///< -1 if there is none of that name
 };
 
-/// Reads a table: one line per row, cells between commas; a cell in double quotes may hold commas, and quotes as two. Lines
-/// that begin with # are passed over. Throws IoError naming file and line: no header, a column twice, a ragged row, a quote
-/// that does not end.
+/// Reads a table: one line per row, cells between commas; a cell in double quotes may hold commas, and doubled quotes. Lines
+/// that begin with # are skipped. Throws IoError naming file and line: no header, a column twice, a ragged row, a quote
+/// without an end.
 CsvTable read_csv(const std::string& path);
-/// The same of text that is in memory; `path` is for the messages.
+/// The same for text in memory; `path` is used in messages.
 CsvTable parse_csv(const std::string& path, const std::string& text);
 
 /// The same as text, cells in quotes where they need them; reading it back gives the same table. Throws InvalidInput for a

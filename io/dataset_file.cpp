@@ -64,7 +64,7 @@ void read_pairs(const std::string& path, Dataset& dataset) {
       throw IoError(path, place,
                     "the name " + corral::quoted(pair.name) + ": expected letters, digits and . _ + - only");
     if (!names.insert(pair.name).second)
-      throw IoError(path, place, "the name " + corral::quoted(pair.name) + " stands twice");
+      throw IoError(path, place, "the name " + corral::quoted(pair.name) + " occurs twice");
     if (pair.source.empty() || pair.target.empty()) throw IoError(path, place, "a pair without source or target");
     for (const std::string& attribute : dataset.attributes)
       pair.attributes.push_back(cells[static_cast<std::size_t>(table.column(attribute))]);
@@ -85,7 +85,7 @@ Dataset read_dataset(const std::string& folder) {
   const std::string path = dataset.path("dataset.toml");
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(dataset.path(kRecipeName), ignored))
-    throw IoError(folder, "", "is half made: its manifest is missing, run the command that makes it again to go on");
+    throw IoError(folder, "", "is unfinished: its manifest is missing; repeat the command that makes it to continue");
   if (!std::filesystem::exists(path, ignored))
     throw IoError(path, "", "does not exist, expected the folder of one data set, with dataset.toml and pairs.csv");
   const TomlTable table = TomlTable::read(path);

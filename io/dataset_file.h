@@ -7,8 +7,7 @@
 
 namespace corral {
 
-/// Two surfaces of a data set. Paths are as they stand in pairs.csv: absolute, or relative to the folder of
-/// the set.
+/// Two surfaces of a data set. Paths are as written in pairs.csv: absolute, or relative to the folder of the set.
 struct DatasetPair {
   std::string name;                     ///< unique in its set; letters, digits, and . _ + - only
   std::string source, target;           ///< mesh files
@@ -28,20 +27,19 @@ struct Dataset {
   std::vector<std::string> attributes;  ///< further columns of pairs.csv, such as noise_pr, overlap, model, scene
   std::vector<DatasetPair> pairs;
 
-  std::string path(const std::string& file) const;  ///< of a file of the set, from where the program runs
+  std::string path(const std::string& file) const;  ///< of a file of the set, from the working directory
 };
 
-/// What the commands that make a set write first, so that a set without a manifest can be told from none.
+/// The file that a command that makes a set writes first, so that an unfinished set can be told from none.
 constexpr char kRecipeName[] = "recipe.txt";
 
-/// Reads the manifest; looks at none of the files that it names.
+/// Reads the manifest, but none of the files that it names.
 ///
 ///   dataset.toml   name (required), kind, units, resolution, provenance, licence, citation (a list)
 ///   pairs.csv      pair,source,target,truth, then any attributes
 ///
 /// Throws IoError naming file and place: an unknown or doubled key, a wrong kind, no pairs, a doubled or empty pair name,
-/// an empty source or target,
-/// a set that is only half made.
+/// an empty source or target, an unfinished set.
 Dataset read_dataset(const std::string& folder);
 
 /// The two files as text; reading them back gives the same set.

@@ -41,7 +41,7 @@ void write_all(int descriptor, const std::string& content, const std::string& pa
   }
 }
 
-/// What the name of a file ends in that has not taken its place yet; mkstemp puts other letters for the last six.
+/// The ending of the name of a temporary file; mkstemp replaces the last six letters.
 constexpr char kTemporary[] = ".part-XXXXXX";
 
 bool is_temporary(const fs::path& name) {
@@ -49,18 +49,18 @@ bool is_temporary(const fs::path& name) {
   return ending.size() == sizeof kTemporary - 1 && ending.rfind(".part-", 0) == 0;
 }
 
-/// Permissions of the file that is there, else those that the umask gives a new one.
+/// Permissions of the existing file, else those that the umask gives a new one.
 mode_t mode_for(const fs::path& place) {
   struct stat status;
   if (::stat(place.c_str(), &status) == 0) return status.st_mode & 07777;
-  static std::mutex asking;  // between the two calls another thread would find none
+  static std::mutex asking;  // between the two calls the umask is 0 for every thread
   const std::lock_guard<std::mutex> lock(asking);
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return 0666 & ~mask;
 }
 
-/// What a chain of links ends at, there or not: a link stays a link, what it names is replaced.
+/// The end of a chain of links, whether it exists or not: a link stays a link, its target is replaced.
 fs::path end_of_links(fs::path path) {
   std::error_code error;
   for (int step = 0; step < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++step)
@@ -68,7 +68,7 @@ fs::path end_of_links(fs::path path) {
   return path;
 }
 
-/// New content beside the file whose place it will take.
+/// New content in a temporary file beside the file that it will replace.
 class StagedFile {
  public:
   explicit StagedFile(const FileContent& file) : file_(file), place_(end_of_links(file.path)) {
@@ -150,7 +150,7 @@ void write_files(const std::vector<FileContent>& files) {
   for (const auto& file : staged)
     for (const auto& other : staged)
       if (file != other && file->takes_the_place_of(*other))
-        throw IoError(other->path(), "", "is to hold two outputs at once, expected a name for each");
+        throw IoError(other->path(), "", "is named for two outputs, expected a name for each");
   for (const auto& file : staged) file->commit();
 }
 

@@ -8,7 +8,7 @@
 
 namespace corral {
 
-/// What a group file says of a table of matches.
+/// The content of a group file: a selection from a table of matches.
 struct GroupTable {
   int matches = 0;             ///< rows of the table
   Indices selected;            ///< ascending
@@ -19,7 +19,7 @@ struct GroupTable {
 /// IoError naming file and line.
 GroupTable read_group(const std::string& path);
 
-/// The same, and throws IoError unless the file has one row for each of so many matches.
+/// The same, and throws IoError unless the file has exactly this many rows, one per match.
 GroupTable read_group_of(const std::string& path, int matches);
 
 /// The same as text.

@@ -94,7 +94,7 @@ std::int64_t LineReader::integer(std::string_view field, std::int64_t low, std::
     fail(what + " is " + quoted(field) + ", expected " +
          (low < high    ? "a whole number in " + std::to_string(low) + " .. " + std::to_string(high)
           : low == high ? std::to_string(low)
-                        : "none: there is nothing to choose from"));
+                        : "none: there is no such thing"));
   return *value;
 }
 

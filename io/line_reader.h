@@ -8,8 +8,8 @@
 
 namespace corral {
 
-/// Walks over the lines of a text file and turns fields into numbers; whatever is wrong becomes an IoError that names the
-/// file and the line. A line that the end of the file cuts off is an error: nobody can tell 1.25 from 1.2 cut short.
+/// Reads a text file line by line and converts fields to numbers; every error is an IoError that names the file and the
+/// line. A last line without a newline is an error: 1.2 could be 1.25 cut short.
 class LineReader {
  public:
   /// Both must outlive the reader. Lines starting with `comment` are skipped, as are blank ones ('\0': no comments).
@@ -17,7 +17,7 @@ class LineReader {
 
   /// Moves to the next line that is neither blank nor a comment; false at the end of the file.
   bool next();
-  /// The same where a line must follow; `expected` says what was to be there.
+  /// The same where a line must follow; `expected` describes it in the message.
   void need(const std::string& expected);
 
   std::string_view line() const { return line_; }      ///< without its end and without white space around
@@ -43,7 +43,7 @@ class LineReader {
   std::vector<std::string_view> fields_;
 };
 
-/// A piece of a file in quotes, shortened and made printable for a message.
+/// Text from a file in quotes, shortened and made printable for a message.
 std::string quoted(std::string_view text);
 
 }  // namespace corral

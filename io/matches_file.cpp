@@ -21,7 +21,7 @@ std::vector<std::string> numbered(const std::string& prefix, int count) {
   return names;
 }
 
-/// The lines in front of the header.
+/// The lines before the header.
 void read_preamble(LineReader& reader, CorrespondenceSet& matches) {
   reader.need(kFirstLine);
   if (reader.line() != kFirstLine) reader.fail("found " + quoted(reader.line()) + ", expected " + quoted(kFirstLine));
@@ -57,7 +57,7 @@ class Columns {
     const auto& names = reader.fields(',');
     count_ = names.size();
     for (std::size_t i = 0; i < names.size(); ++i)
-      if (!places_.emplace(names[i], i).second) reader.fail("column " + quoted(names[i]) + " stands twice");
+      if (!places_.emplace(names[i], i).second) reader.fail("column " + quoted(names[i]) + " occurs twice");
   }
 
   std::size_t count() const { return count_; }

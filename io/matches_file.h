@@ -16,7 +16,7 @@ namespace corral {
 ///       second_feature_distance,source_frame_0..8,target_frame_0..8          (one header line)
 ///   one row per match
 ///
-/// Columns may stand in any order; only the six coordinates are required, frames come whole, others are passed over.
+/// Columns may come in any order; only the six coordinates are required, a frame needs all nine, unknown ones are ignored.
 /// Throws    IoError naming file and line: a ragged row, a field that is not a finite number, a resolution that is not
 ///           positive, a missing or doubled column.
 CorrespondenceSet read_matches(const std::string& path);

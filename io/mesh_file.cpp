@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
-#include <utility>
 
 #include "io/file.h"
 #include "kernel/error.h"
@@ -23,17 +22,17 @@ std::string ending_of(const std::string& path) {
 }
 
 using Parser = Mesh (*)(const std::string& path, std::string_view content);
-
-/// Every format that is read, by the ending of the name.
-constexpr std::pair<const char*, Parser> kFormats[] = {
-    {".ply", parse_ply}, {".off", parse_off}, {".obj", parse_obj},
-    {".stl", parse_stl}, {".xyz", parse_xyz}, {".pcd", parse_pcd},
+struct MeshFormat {
+  const char* ending;
+  Parser parse;
 };
+constexpr MeshFormat kFormats[] = {{".ply", parse_ply}, {".off", parse_off}, {".obj", parse_obj},
+                                   {".stl", parse_stl}, {".xyz", parse_xyz}, {".pcd", parse_pcd}};
 
 Parser parser_of(const std::string& path) {
   const std::string ending = ending_of(path);
-  for (const auto& [known, parser] : kFormats)
-    if (ending == known) return parser;
+  for (const MeshFormat& format : kFormats)
+    if (ending == format.ending) return format.parse;
   return nullptr;
 }
 
@@ -64,10 +63,9 @@ Triangles TriangleBuilder::build() const {
 
 std::string mesh_endings() {
   std::string text;
-  std::size_t left = std::size(kFormats);
-  for (const auto& [ending, parser] : kFormats) {
-    text += (text.empty() ? "" : left == 1 ? " or " : ", ") + std::string(ending);
-    --left;
+  for (const MeshFormat& format : kFormats) {
+    const bool is_last = &format == std::end(kFormats) - 1;
+    text += (text.empty() ? "" : is_last ? " or " : ", ") + std::string(format.ending);
   }
   return text;
 }

@@ -9,38 +9,38 @@
 
 namespace corral {
 
-/// The endings of the names that read_mesh takes, for messages: ".ply, .off or .obj".
+/// The endings of the names that read_mesh accepts, for messages: ".ply, .off, ... or .pcd".
 std::string mesh_endings();
 
 /// Whether read_mesh knows the ending of the name.
 bool is_mesh_name(const std::string& path);
 
-/// Reads a mesh or a point cloud; the format is that of the name's ending: .ply (ASCII and both binaries), .off, .obj,
+/// Reads a mesh or a point cloud; the ending of the name gives the format: .ply (ASCII and both binary forms), .off, .obj,
 /// .stl (ASCII and binary), and for clouds only .xyz and .pcd (ASCII and binary, not compressed).
 /// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
 /// anything is allocated.
 ///   STL  corners at exactly the same place are one vertex (-0 is +0), numbered as they first appear; a facet that
 ///        repeats a corner stays. The normals are not read.
-///   XYZ  one point a line, separated by white space or commas; columns after the third are not read.
+///   XYZ  one point per line, separated by white space or commas; columns after the third are not read.
 ///   PCD  points whose x, y and z are all nan are missing returns of the sensor and left out. The pose of the sensor
 ///        (VIEWPOINT) is not applied.
 /// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, more or
-///           less than the header promises, a coordinate that is not finite, a face of a vertex that is not there.
+///           less than the header promises, a coordinate that is not finite, a face with a vertex that does not exist.
 Mesh read_mesh(const std::string& path);
 
 /// The mesh as ASCII PLY in double precision; reading it back gives the same mesh.
 std::string ply_text(const Mesh& mesh);
 
-/// The same as binary PLY, little-endian: about half as long, and far faster to write and read.
+/// The same as binary little-endian PLY: about half the size, and much faster to write and read.
 std::string binary_ply_text(const Mesh& mesh);
 
-/// Writes the first to a name that ends in .ply. Throws IoError.
+/// Writes the ASCII form to a name that ends in .ply. Throws IoError.
 void write_mesh(const std::string& path, const Mesh& mesh);
 
-/// Throws IoError unless the name ends in .ply: what is written there is PLY.
+/// Throws IoError unless the name ends in .ply, the only format that is written.
 void check_ply_name(const std::string& path);
 
-// One parser per format, on the whole content of a file; `path` is for messages.
+// One parser per format, on the whole content of a file; `path` is used in messages.
 Mesh parse_ply(const std::string& path, std::string_view content);
 Mesh parse_off(const std::string& path, std::string_view content);
 Mesh parse_obj(const std::string& path, std::string_view content);

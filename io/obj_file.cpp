@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OBJ: lines of vertices (v) and faces (f) among others that carry no geometry; corners count from 1, or back from -1.
+// OBJ: lines of vertices (v) and faces (f) among others without geometry; corners count from 1, or backwards from -1.
 #include <array>
 
 #include "io/line_reader.h"
@@ -8,7 +8,7 @@
 namespace corral {
 namespace {
 
-/// Keywords that say nothing about vertices and faces.
+/// Keywords of lines without geometry.
 bool is_ignored(std::string_view keyword) {
   constexpr std::array<std::string_view, 19> kIgnored = {
       "vn", "vt",     "vp",     "g",   "o",     "s",        "usemtl",   "mtllib",     "l",        "p",

@@ -7,7 +7,7 @@
 namespace corral {
 namespace {
 
-/// Normals or colours follow the coordinates on the lines of these.
+/// With these keywords normals or colours follow the coordinates.
 bool is_keyword(std::string_view word) { return word == "OFF" || word == "COFF" || word == "NOFF" || word == "CNOFF"; }
 
 struct Counts {

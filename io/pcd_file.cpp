@@ -11,12 +11,12 @@
 namespace corral {
 namespace {
 
-/// Collects points; those without any coordinate are missing returns of a sensor and are left out.
+/// Collects points; those without any coordinate are missing returns of the sensor and are left out.
 class CloudBuilder {
  public:
   explicit CloudBuilder(std::int64_t points) : points_(points, 3) {}
 
-  /// What is wrong with the point; empty if it was taken or left out.
+  /// What is wrong with the point; empty if it was added or left out.
   std::string add(const Eigen::RowVector3d& point) {
     if (point.allFinite())
       points_.row(used_++) = point;
@@ -39,7 +39,7 @@ class CloudBuilder {
 
 Mesh read_text(const PcdHeader& header, LineReader& reader) {
   const std::size_t values = header.values_per_point(), bytes = reader.rest().size();
-  // The shortest value takes two bytes: a digit and what ends it.
+  // The shortest value takes two bytes: a digit and a separator.
   if (static_cast<std::size_t>(header.points) > bytes / (2 * values))
     reader.fail("the header promises " + std::to_string(header.points) + " points of " + std::to_string(values) +
                 " values, but only " + std::to_string(bytes) + " bytes follow");
@@ -64,8 +64,8 @@ Mesh read_text(const PcdHeader& header, LineReader& reader) {
   return cloud.take();
 }
 
-/// The library's own writer makes a file one page of memory longer than its points: after the last of them stand as many
-/// zero bytes as the header leaves free in a page.
+/// The library's own writer pads a file: after the last point follow as many zero bytes as the header leaves free in a page
+/// of memory.
 bool is_page_filler(std::string_view left, std::size_t header_bytes) {
   for (const std::size_t page : {4096U, 16384U, 65536U})
     if (header_bytes + left.size() == page) return left.find_first_not_of('\0') == std::string_view::npos;

@@ -11,7 +11,7 @@ namespace {
 
 using Values = std::vector<std::string_view>;
 
-/// The entries of the header, each a line of its own. The format wants them in one order.
+/// The entries of the header, each on a line of its own, in the order that the format prescribes.
 class Entries {
  public:
   explicit Entries(LineReader& reader) : reader_(reader) {}
@@ -42,7 +42,7 @@ class Entries {
  private:
   LineReader& reader_;
   Values values_;
-  bool here_ = false;  // the reader stands on an entry that is not taken yet
+  bool here_ = false;  // the reader is at an entry that has not been consumed yet
 };
 
 void check_version(const LineReader& reader, std::string_view version) {
@@ -57,7 +57,7 @@ std::vector<PcdField> parse_fields(const LineReader& reader, const Values& names
   for (std::size_t i = 0; i < names.size(); ++i) {
     fields[i].name = names[i];
     // Gaps between the fields of a point all have the same name.
-    if (!seen.insert(names[i]).second && names[i] != "_") reader.fail("field " + quoted(names[i]) + " stands twice");
+    if (!seen.insert(names[i]).second && names[i] != "_") reader.fail("field " + quoted(names[i]) + " occurs twice");
   }
   int axis = 0;
   for (const std::string_view coordinate : {"x", "y", "z"}) {
@@ -132,8 +132,8 @@ PcdHeader parse_pcd_header(LineReader& reader) {
   parse_types(entries, reader, header.fields);
   if (entries.is("COUNT")) parse_counts(reader, entries.take("COUNT", header.fields.size()), header.fields);
   const std::int64_t width = entries.take_count("WIDTH"), height = entries.take_count("HEIGHT");
-  // The pose of the sensor. It is checked but not applied: the points of a file are read as they stand in it, and it
-  // is for --truth to say how two files lie to each other. Version 0.6 does not have it.
+  // The pose of the sensor. It is checked but not applied: points are read as they are, and the pose between two files is
+  // given by --truth. Version 0.6 does not have it.
   if (entries.is("VIEWPOINT"))
     for (const std::string_view value : entries.take("VIEWPOINT", 7)) reader.finite_number(value);
   header.points = entries.take_count("POINTS");

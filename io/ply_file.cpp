@@ -10,7 +10,7 @@
 namespace corral {
 namespace {
 
-/// The values of a text body, one element a line.
+/// The values of a text body, one element per line.
 class TextBody {
  public:
   TextBody(const std::string&, LineReader& reader) : reader_(reader) {}
@@ -85,7 +85,7 @@ class BinaryBody {
   std::size_t place_ = 0;  // of the value read last
 };
 
-/// Where the properties that make a mesh stand.
+/// The positions of the properties that form a mesh.
 struct Layout {
   int x, y, z;
   int corners;
@@ -186,7 +186,7 @@ class MeshReader {
     }
     if (largest >= vertices_ && vertices_ > 0)
       body_.fail("a corner is vertex " + std::to_string(largest) + ", expected 0 .. " + std::to_string(vertices_ - 1));
-    if (vertices_ == 0) largest_corners_.push_back(largest);  // faces before vertices: judged at the end
+    if (vertices_ == 0) largest_corners_.push_back(largest);  // faces before vertices: checked at the end
     triangles_.add_polygon(corners);
   }
 

@@ -28,7 +28,8 @@ PlyProperty parse_property(const LineReader& reader, const std::vector<std::stri
   if (fields.size() != 5 || fields[1] != "list")
     reader.fail("found " + quoted(reader.line()) + ", expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
   const PlyType* count_type = find_type(reader, fields[2]);
-  if (count_type->kind == 'f') reader.fail("the length of a list is " + quoted(fields[2]) + ", expected a whole type");
+  if (count_type->kind == 'f')
+    reader.fail("the length of a list is of type " + quoted(fields[2]) + ", expected an integer type");
   return {std::string(fields[4]), find_type(reader, fields[3]), count_type};
 }
 
@@ -60,13 +61,13 @@ PlyHeader parse_ply_header(LineReader& reader) {
     if (is_remark(fields[0])) continue;
     if (fields[0] == "element" && fields.size() == 3) {
       for (const PlyElement& other : header.elements)
-        if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " stands twice");
+        if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " occurs twice");
       header.elements.push_back(
           {std::string(fields[1]), reader.integer(fields[2], 0, kMaximumCount, "the number of elements"), {}});
     } else if (fields[0] == "property" && !header.elements.empty()) {
       const PlyProperty property = parse_property(reader, fields);
       if (header.elements.back().find(property.name) >= 0)
-        reader.fail("property " + quoted(property.name) + " stands twice");
+        reader.fail("property " + quoted(property.name) + " occurs twice");
       header.elements.back().properties.push_back(property);
     } else {
       reader.fail("found " + quoted(reader.line()) + ", expected an element or a property");

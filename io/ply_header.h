@@ -25,7 +25,7 @@ struct PlyElement {
   std::int64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// Place of a property among the others, -1 if there is none.
+  /// Position of a property among the others, -1 if there is none.
   int find(std::string_view wanted) const {
     for (std::size_t i = 0; i < properties.size(); ++i)
       if (properties[i].name == wanted) return static_cast<int>(i);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// STL: triangles that each bring their own corners, as text or packed after a header of 84 bytes. Corners at exactly
-// the same place are one vertex here: without that a mesh would have no connectivity.
+// STL: triangles that each list their own corners, as text or packed after a header of 84 bytes. Corners at exactly the same
+// place become one vertex: otherwise a mesh would have no connectivity.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +18,8 @@
 namespace corral {
 namespace {
 
-// The header of a binary file: 80 bytes of anything, then the number of facets. A facet: its normal and three corners
-// in single precision, then two bytes that mean nothing.
+// The header of a binary file: 80 arbitrary bytes, then the number of facets. A facet: its normal and three corners in single
+// precision, then two bytes without meaning.
 constexpr std::size_t kTitle = 80, kHeader = 84, kFacet = 50;
 constexpr NumberType kCount = {4, 'u'}, kCoordinate = {4, 'f'};
 
@@ -35,7 +35,7 @@ class FacetSoup {
     corners_.push_back(corner);
   }
 
-  /// Sorting rather than hashing: no file can be made that takes quadratic time.
+  /// Sorting rather than hashing, so that no file can cause quadratic time.
   Mesh weld() const {
     const auto corner = [&](int i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
     Indices order(corners_.size());
@@ -78,8 +78,8 @@ std::uint64_t binary_size(std::string_view content) {
   return kHeader + kFacet * static_cast<std::uint64_t>(decode_number(kCount, content.data() + kTitle));
 }
 
-/// Many writers begin the title of a binary file with the word solid too, so the size decides. What fits neither way is
-/// taken for a damaged binary file if there is a zero byte in it, as no text has one.
+/// Many writers begin the title of a binary file with the word solid too, so the size decides. A file that fits neither form
+/// is treated as a damaged binary file if it contains a zero byte, which text does not.
 bool is_binary(std::string_view content) {
   if (content.size() >= kHeader && content.size() == binary_size(content)) return true;
   return content.find('\0') != std::string_view::npos;
@@ -143,7 +143,7 @@ class TextReader {
 
  private:
   void read_facet() {
-    // The normal is not looked at, as some writers put no numbers there for a facet without area.
+    // The normal is ignored: some writers put no numbers there for a facet without area.
     if (!is_line({"facet", "normal"}, 3)) refuse("'facet normal NX NY NZ' or endsolid");
     if (soup_.is_full()) reader_.fail("more facets than can be counted");
     need_line({"outer", "loop"});
@@ -157,7 +157,7 @@ class TextReader {
     need_line({"endfacet"});
   }
 
-  /// Whether the line holds these words, and so many fields after them.
+  /// Whether the line holds these words, followed by `fields` more.
   bool is_line(std::initializer_list<std::string_view> words, std::size_t more) {
     const auto& fields = reader_.fields();
     return fields.size() == words.size() + more &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// How numbers stand in the files of mesh formats: as packed bytes or as text.
+// Numbers in the files of mesh formats: packed bytes or text.
 
 #include <array>
 #include <cstdint>
@@ -41,7 +41,7 @@ inline double decode_number(const NumberType& type, const char* raw, bool big_en
   return static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused);  // carries the sign up
 }
 
-/// The number that a field of text holds, which must be one that the type can hold; `name` is the type's in a message.
+/// The number in a field of text, which must be in the range of the type; `name` is that of the type in a message.
 inline double parse_number(const LineReader& reader, std::string_view field, const NumberType& type,
                            std::string_view name) {
   if (type.kind == 'f') return reader.number(field);
@@ -52,7 +52,7 @@ inline double parse_number(const LineReader& reader, std::string_view field, con
     return static_cast<double>(*value);
   }
   const std::int64_t half = std::int64_t{1}
-                            << (8 * type.bytes - 2);  // of what one sign can hold: the whole may not fit
+                            << (8 * type.bytes - 2);  // half the range of one sign: the whole may not fit
   const std::int64_t low = type.kind == 'i' ? -2 * half : 0;
   const std::int64_t high = type.kind == 'i' ? 2 * (half - 1) + 1 : 4 * half - 1;
   return static_cast<double>(reader.integer(field, low, high, "a value of type " + std::string(name)));

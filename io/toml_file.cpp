@@ -15,7 +15,7 @@ namespace corral {
 
 struct TomlTable::State {
   std::string path;
-  std::shared_ptr<const toml::table> root;  // keeps `table` alive
+  std::shared_ptr<const toml::table> root;  // owns `table`
   const toml::table* table;
 
   const toml::node* find(const std::string& key) const { return table->get(key); }

@@ -9,12 +9,12 @@
 
 namespace corral {
 
-/// A table of a TOML file, read key by key. Everything wrong becomes an IoError that names file, line and key.
+/// A table of a TOML file, read key by key. Every error is an IoError that names file, line and key.
 class TomlTable {
  public:
-  /// Reads a file; throws IoError if it is no TOML.
+  /// Reads a file; throws IoError if it is not TOML.
   static TomlTable read(const std::string& path);
-  /// The same of text that is in memory; `path` is for the messages.
+  /// The same for text in memory; `path` is used in messages.
   static TomlTable parse(const std::string& path, const std::string& text);
 
   // The value of a key, absent if the key is. A value of another type is an IoError.
@@ -30,9 +30,9 @@ class TomlTable {
   /// A text, number or flag as text, as "key=value" options want it.
   std::optional<std::string> scalar_text(const std::string& key) const;
 
-  std::vector<std::string> keys() const;  ///< in the order of their names
+  std::vector<std::string> keys() const;  ///< sorted by name
 
-  /// Throws IoError if the table has a key that is none of these, with the nearest of them.
+  /// Throws IoError if the table has an unknown key, and suggests the known key most like it.
   void only(const std::vector<std::string>& known) const;
 
   /// Throws IoError at the line of the key, or of the table if it is not there.
@@ -44,11 +44,11 @@ class TomlTable {
   std::shared_ptr<const State> state_;
 };
 
-/// Text as a TOML string with its quotes.
+/// Text as a quoted TOML string.
 std::string toml_text(const std::string& value);
 
-/// The one of the names that is written most like this one: fewest letters to change, insert or leave out, the first of
-/// several; empty if none is near (more than a third of the letters differ).
+/// The name with the smallest edit distance to this one, the first of several; empty if none is similar (more than a third
+/// of the letters differ).
 std::string nearest_name(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace corral

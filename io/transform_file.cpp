@@ -33,7 +33,7 @@ void check_rigid(const std::string& path, const Eigen::Matrix4d& matrix) {
 RigidTransform read_transform(const std::string& path) {
   std::string content = read_file(path);
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a 4x4 matrix");
-  content += '\n';  // the last row is 0 0 0 1: nothing of it can be missing unnoticed
+  content += '\n';  // the last row must be 0 0 0 1, so that a truncated one is noticed
   LineReader reader(path, content, '#');
   std::vector<double> numbers;
   while (reader.next())

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// XYZ: one point a line; what follows the three coordinates (colours, normals, intensities) is not read.
+// XYZ: one point per line; further columns (colours, normals, intensities) are not read.
 #include "io/line_reader.h"
 #include "io/mesh_file.h"
 
 namespace corral {
 namespace {
 
-/// A line with a comma in it is separated by commas: a decimal comma then leaves fields that are no numbers.
+/// A line that contains a comma is separated by commas: a decimal comma then gives fields that are not numbers.
 const std::vector<std::string_view>& columns(LineReader& reader) {
   return reader.line().find(',') == std::string_view::npos ? reader.fields() : reader.fields(',');
 }

@@ -5,7 +5,7 @@
 
 namespace corral {
 
-/// Whether so many numbers are neither infinite nor NaN: one pass at the speed of memory.
+/// Whether none of `count` numbers is infinite or NaN; one pass at memory speed.
 /// Plain form  tests/support/reference_columns.h
 bool all_finite(const double* numbers, Eigen::Index count);
 

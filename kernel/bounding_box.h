@@ -21,7 +21,7 @@ struct Extent {
 /// Plain form  tests/support/reference_columns.h
 Extent extent_of(const double* numbers, Eigen::Index count);
 
-/// Of no points: a box of no size at the origin. The points must be finite.
+/// For no points: a box of size zero at the origin. The points must be finite.
 BoundingBox bounding_box(const Points& points);
 
 }  // namespace corral

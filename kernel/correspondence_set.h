@@ -10,8 +10,8 @@
 
 namespace corral {
 
-/// The table of matches between two surfaces: row i of every column belongs to match i. It carries its own ruler, so that
-/// lengths in options can be in pr. A column that is not there is empty; the two point columns always are.
+/// The table of matches between two surfaces: row i of every column belongs to match i. It carries its unit of length, so
+/// that lengths in options can be in pr. An absent column is empty; the two point columns are always present.
 struct CorrespondenceSet {
   Points source_points;                ///< M x 3, mesh units
   Points target_points;                ///< M x 3, mesh units
@@ -34,14 +34,14 @@ struct CorrespondenceSet {
   void validate() const;
 };
 
-/// Throws InvalidInput naming the first of some rows that the table does not have.
+/// Throws InvalidInput naming the first of `rows` that is not a row of the table.
 void check_rows(const CorrespondenceSet& matches, const Indices& rows, const std::string& who);
 
-/// The table of these rows, in their order; a row may stand twice. Columns that are absent stay so. Throws InvalidInput for a
-/// row that the table does not have.
+/// The table of these rows, in their order; a row may occur twice. Absent columns stay absent. Throws InvalidInput for a row
+/// that is not in the table.
 CorrespondenceSet select_rows(const CorrespondenceSet& matches, const Indices& rows);
 
-/// Columns that not every table has.
+/// The optional columns that a grouper may need.
 enum class Column { SourceFrames, TargetFrames, FeatureDistance, SecondFeatureDistance };
 
 /// validate(), then throws InvalidInput if a named column is absent: "gc: column feature_distance is absent, ...".

@@ -9,7 +9,7 @@
 
 namespace corral {
 
-/// Which matches are right: label i is true iff |T p_i - q_i| <= threshold, T the ground truth (inclusive).
+/// Which matches are correct: label i is true iff |T p_i - q_i| <= threshold, T the ground truth (inclusive).
 ///
 /// Source    [yang2017evaluation], threshold 4 pr.
 /// Throws    InvalidInput: invalid table, or a threshold that is not finite and >= 0.
@@ -20,8 +20,8 @@ std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTra
 struct GroupingScore {
   int matches = 0;
   int selected = 0;
-  int correct = 0;                  ///< selected and right
-  int true_matches = 0;             ///< right, selected or not
+  int correct = 0;                  ///< correct matches among the selected
+  int true_matches = 0;             ///< correct matches in the table
   std::optional<double> precision;  ///< correct / selected
   std::optional<double> recall;     ///< correct / true_matches
   std::optional<double> f1;         ///< 2 correct / (selected + true_matches), their harmonic mean; absent as recall is
@@ -30,10 +30,10 @@ struct GroupingScore {
 /// Throws    InvalidInput if a selected row is out of range or the rows do not ascend strictly.
 GroupingScore score_grouping(const std::vector<bool>& labels, const Indices& selected);
 
-/// How often the local frames of right matches follow the surface: what methods that trust frames live on.
+/// How repeatable the local frames of correct matches are: groupers that use frames depend on it.
 struct FrameRepeatability {
-  int compared = 0;  ///< right matches with a frame on both sides
-  int agreeing = 0;  ///< of these, frames that the true rotation brings within the limit of each other
+  int compared = 0;  ///< correct matches with a frame on both sides
+  int agreeing = 0;  ///< of these, matches whose frames agree within the limit under the true rotation
   std::optional<double> share() const;
 };
 
@@ -50,21 +50,21 @@ double translation_error_pr(const RigidTransform& estimate, const RigidTransform
 /// How far an estimate carries points from where the truth carries them: |T_estimate x - T_truth x| in pr.
 struct PointError {
   double rmse_pr = 0;  ///< root mean square over the points
-  double mean_pr = 0;  ///< mean over the points (what the field's published "RMSE" curves hold)
+  double mean_pr = 0;  ///< mean over the points (what published "RMSE" curves of the field show)
 };
 
 /// Over N points in the source (rows); absent if there are none.
 std::optional<PointError> point_error(const RigidTransform& estimate, const RigidTransform& truth, const Points& points,
                                       double resolution);
 
-/// The thresholds of the field's success curves: 0.5, 1.0 .. 5.0 pr. A pair is registered if its error is at most the last.
+/// The thresholds of success curves: 0.5, 1.0 .. 5.0 pr. A pair is registered if its error is at most the last.
 const std::vector<double>& success_thresholds_pr();
 
 /// One point of the success curve per threshold: the share of pairs whose error is at most the threshold (inclusive). An
 /// absent error (no pose) or NaN is a failure at every threshold.
 ///
 /// Source    U3M's success curves; errors are PointError::mean_pr, as the published ones are.
-/// Throws    InvalidInput if there is no pair: a share of none is undefined.
+/// Throws    InvalidInput if there is no pair: the share is then undefined.
 std::vector<double> success_curve(const std::vector<std::optional<double>>& errors_pr,
                                   const std::vector<double>& thresholds_pr = success_thresholds_pr());
 

@@ -5,8 +5,8 @@
 
 namespace corral {
 
-/// Calls body(0) .. body(count - 1), each once, in any order and on any threads, and returns when all are done. Whoever
-/// has threads hands one in; results never depend on it.
+/// Calls body(0) .. body(count - 1), each once, in any order and on any threads, and returns when all are done. A caller
+/// that has threads passes one; results never depend on it.
 using ParallelFor = std::function<void(int count, const std::function<void(int)>& body)>;
 
 /// One after the other, in the calling thread.

@@ -6,11 +6,11 @@
 
 namespace corral {
 
-/// Points and the nearest ones of a target, in columns of whole registers; what is past the last point has no partner.
+/// Points and their nearest points of a target, in columns padded to whole vector registers; padding has no partner.
 struct PointPairs {
   AlignedColumn source[3];  ///< the points
-  AlignedColumn target[3];  ///< their partners; anything where there is none
-  Indices target_rows;      ///< of the partners; -1: no target point is near enough
+  AlignedColumn target[3];  ///< their partners; unspecified where there is none
+  Indices target_rows;      ///< rows of the partners; -1 where no target point is near enough
 };
 
 }  // namespace corral

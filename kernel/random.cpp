@@ -21,7 +21,7 @@ RandomStream::RandomStream(std::uint64_t seed) : engine_(mix(seed)) {}
 
 std::uint64_t RandomStream::below(std::uint64_t count) {
   std::uint64_t word = engine_();
-  if (word < count) {  // only there may a word be one of the first 2^64 mod count, which would favour small values
+  if (word < count) {  // only then can the word be one of the first 2^64 mod count, which would favour small values
     const std::uint64_t rejected = (0 - count) % count;
     while (word < rejected) word = engine_();
   }

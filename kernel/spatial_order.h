@@ -6,8 +6,9 @@
 
 namespace corral {
 
-/// The rows of points (N x 3) as the leaves of a balanced tree: each eight in a row lie in one place, so do eight such
-/// eights, and so on. Every part is cut across the longest side of its box. Rows that are not finite come last.
+/// The rows of points (N x 3) in the order of the leaves of a balanced tree: eight consecutive rows lie close together, so
+/// do eight such groups of eight, and so on. Each part is split across the longest side of its box. Rows that are not
+/// finite come last.
 ///
 /// Cost      O(N log N).
 /// Plain form  tests/support/reference_spatial_order.h

@@ -31,7 +31,7 @@ struct LaneMotions {
   }
 };
 
-/// Least-squares rigid motion of one triangle to another, the answer of fit_rigid_transform() in closed form.
+/// Least-squares rigid motion of one triangle to another: the result of fit_rigid_transform() in closed form.
 ///
 /// The best motion lays plane on plane, normal on normal, centroid on centroid. In the planes, with corners P_i and Q_i
 /// about their centroids and M = sum P_i Q_i^T, what is left is one angle: (cos, sin) ~ (M11 + M22, M12 - M21). Since

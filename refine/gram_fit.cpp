@@ -12,7 +12,7 @@
 namespace corral {
 namespace {
 
-/// S x with S^T S = G. Parameters: a unit quaternion (w, v) and a shift.
+/// S x with S^T S = G. Parameters: a unit quaternion (w, v) and a translation.
 class RootOfGram : public ceres::SizedCostFunction<13, 4, 3> {
  public:
   explicit RootOfGram(const Gram& gram) {
@@ -64,7 +64,7 @@ std::optional<GramFit> minimise(const Gram& gram) {
   problem.AddResidualBlock(new RootOfGram(gram), nullptr, quaternion, shift);
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;  // Ceres sums per thread: more threads, other bits
+  solver.num_threads = 1;  // Ceres sums per thread: the result would depend on their number
   solver.function_tolerance = solver.gradient_tolerance = solver.parameter_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -72,7 +72,7 @@ std::optional<GramFit> minimise(const Gram& gram) {
   if (!summary.IsSolutionUsable()) return std::nullopt;
   const Eigen::Quaterniond turn(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
   return GramFit{{turn.normalized().toRotationMatrix(), Eigen::Map<const Eigen::Vector3d>(shift)},
-                 2 * summary.initial_cost,  // Ceres halves
+                 2 * summary.initial_cost,  // Ceres minimises half the sum
                  2 * summary.final_cost};
 }
 

@@ -29,7 +29,7 @@ double separation(const RigidTransform& one, const RigidTransform& other, const 
   return std::hypot(view.radius * turn.angle(), (one * view.center - other * view.center).norm());
 }
 
-/// Views that are connected, and which of them leads each set.
+/// Sets of connected views, each with a representative.
 class Parts {
  public:
   explicit Parts(std::size_t views) : leader_(views) { std::iota(leader_.begin(), leader_.end(), 0); }
@@ -37,7 +37,7 @@ class Parts {
     while (leader_[static_cast<std::size_t>(view)] != view) view = leader_[static_cast<std::size_t>(view)];
     return view;
   }
-  /// False if they are connected already. The lower leader leads.
+  /// False if they are connected already. The lower representative stays.
   bool join(int a, int b) {
     a = leader(a), b = leader(b);
     leader_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
@@ -83,7 +83,7 @@ class Alignment {
   MultiviewAlignment run() {
     count_loops();
     choose_tree();
-    std::vector<bool> votes(pairs_.size(), true);  // the loss bears with the wrong ones at first
+    std::vector<bool> votes(pairs_.size(), true);  // at first the robust loss handles the wrong ones
     bool settled = false;
     for (int round = 0; round < kMostRounds && !settled; ++round) {
       solve(votes);
@@ -110,7 +110,7 @@ class Alignment {
   const View& view(int index) const { return views_[static_cast<std::size_t>(index)]; }
   RigidTransform& pose(int index) { return poses_[static_cast<std::size_t>(index)]; }
 
-  /// Triples of pairs that lead from a view back to it.
+  /// Triples of pairs that form a loop.
   void count_loops() {
     std::map<std::pair<int, int>, std::vector<std::size_t>> between;
     for (std::size_t i = 0; i < pairs_.size(); ++i)
@@ -133,8 +133,8 @@ class Alignment {
       }
   }
 
-  /// Poses from a tree of pairs that connects all views: of the tree of the most trusted pairs and many random ones, which
-  /// prefer pairs of closed loops, the one that the most weight of pairs agrees with.
+  /// Poses from a spanning tree of pairs: of the tree of the most trusted pairs and many random ones, which prefer pairs of
+  /// closed loops, the one with which pairs of the largest total weight agree.
   void choose_tree() {
     std::vector<std::size_t> order(pairs_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -153,8 +153,8 @@ class Alignment {
     poses_ = best;
   }
 
-  /// Poses from the first pairs in an order that connect all views. Returns the weight of the pairs that agree with them; a
-  /// pair may be off by the limit times the root of the pairs of the tree that lead around.
+  /// Poses from the first pairs in an order that connect all views. Returns the weight of the pairs that agree with them; the
+  /// limit grows with the square root of the number of tree pairs between the two views.
   double plant_tree(const std::vector<std::size_t>& order) {
     parts_.emplace(views_.size());
     std::vector<std::vector<std::size_t>> branches(views_.size());
@@ -197,7 +197,7 @@ class Alignment {
     return weight;
   }
 
-  /// Measures each pair by the present poses: within the limit or not.
+  /// Measures each pair against the current poses: within the limit or not.
   std::vector<bool> verdicts() {
     std::vector<bool> within;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -258,7 +258,7 @@ class Alignment {
           Eigen::Quaterniond(turns[i][0], turns[i][1], turns[i][2], turns[i][3]).normalized().toRotationMatrix();
   }
 
-  /// Whether no other pair with a vote connects the two views of a pair.
+  /// Whether no other voting pairs connect the two views of a pair.
   bool is_bridge(std::size_t pair, const std::vector<bool>& votes) const {
     Parts others(views_.size());
     for (std::size_t i = 0; i < pairs_.size(); ++i)

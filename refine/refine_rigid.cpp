@@ -10,11 +10,11 @@
 namespace corral {
 namespace {
 
-/// A second scatter of at most this share of the largest is that of a line: the limit of fit_rigid_transform.
+/// If the second scatter is at most this share of the largest, the points are on a line: the limit of fit_rigid_transform.
 constexpr double kThinnest = 1e-6;
 
-/// The chosen rows in pr about their centroids: the two halves of a pose then hardly depend on each other, and an
-/// offset of the coordinates costs no digits.
+/// The chosen rows in pr about their centroids: rotation and translation are then nearly uncorrelated, and an offset of the
+/// coordinates costs no precision.
 struct CentredRows : MatchedPoints {
   Eigen::Vector3d source_mean, target_mean;  // mesh units
 
@@ -28,7 +28,7 @@ struct CentredRows : MatchedPoints {
   }
 };
 
-/// False for points on one line, or in one place up to the rounding of coordinates as far out as `mean`; NaN spans nothing.
+/// False for points on one line, or coincident up to the rounding of coordinates as large as `mean`, or NaN.
 bool span_a_plane(const Points& centred, double mean = 0) {
   const Eigen::Vector3d scatter =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred.transpose() * centred, Eigen::EigenvaluesOnly)
@@ -37,7 +37,7 @@ bool span_a_plane(const Points& centred, double mean = 0) {
   return scatter(1) > kThinnest * scatter(2) && scatter(2) > static_cast<double>(centred.rows()) * rounding * rounding;
 }
 
-/// The same of the source points as far as their rows still have a weight.
+/// The same for the source points, weighted.
 bool kept_rows_span_a_plane(const RigidTransform& pose, const MatchedPoints& pairs, const ScaledLoss& loss) {
   Eigen::VectorXd weights = (pose.apply(pairs.source) - pairs.target).rowwise().squaredNorm();
   for (double& weight : weights) weight = evaluate_loss(loss, weight).weight;
@@ -98,7 +98,7 @@ void check(const CorrespondenceSet& matches, const Indices& rows, const RefineOp
   check_rows(matches, rows, "refine_rigid");
 }
 
-/// Fills in what follows from the pose of the centred rows; false if they do not fix it.
+/// Fills in what follows from the pose of the centred rows; false if they do not determine it.
 bool describe(const RigidDescent& found, const CentredRows& rows, const ScaledLoss& loss, double resolution,
               RefinedPose& refined) {
   const PoseCovariance normal = rigid_cost(rows, found.pose, loss).normal;

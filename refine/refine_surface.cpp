@@ -12,10 +12,10 @@
 namespace corral {
 namespace {
 
-constexpr int kFewestPairs = 6;  // as many as a pose has parts
-constexpr int kMostInVain = 3;   // rounds of a level without a new lowest cost: pairs that change to and fro
+constexpr int kFewestPairs = 6;  // the degrees of freedom of a pose
+constexpr int kMostInVain = 3;   // rounds of a level without a new lowest cost: pairs that alternate
 
-/// A way through a level.
+/// The course of a level.
 struct Descent {
   RigidTransform pose;                                    ///< where it ended
   SurfaceStatus status = SurfaceStatus::Refined;          ///< why it ended, if early
@@ -39,7 +39,7 @@ class SurfaceRefiner {
     double limit_pr = options_.levels.front().limit_pr;
     for (const SurfaceLevel& level : options_.levels) {
       Descent descent = descend(level, options_.residual, pose);
-      if (level.limit_pr < limit_pr) {  // what lies in the larger one may have led away
+      if (level.limit_pr < limit_pr) {  // pairs within the larger one may have been misleading
         Descent other = descend(level, options_.residual, start);
         if (other.cost < descent.cost) descent = std::move(other);
       }
@@ -114,8 +114,9 @@ class SurfaceRefiner {
     return {step.rotation, centre + unit_ * step.translation - step.rotation * centre};
   }
 
-  /// Whether partners are the same points with noise: then what is between them is as large along the surface, which has
-  /// two directions, as across it, and less than by chance. Another sample lies as it happens to, and does so after a shift.
+  /// Whether partners are the same points with noise: then their distances are as large along the surface, which has two
+  /// directions, as across it, and less than by chance. Points of another sampling have no such partners, before or after a
+  /// shift.
   bool are_points_seen_twice(const RigidTransform& pose) {
     constexpr double kShift_pr = 0.6, kLargestShare = 0.85, kLargestRatio = 1.5;
     if (options_.residual == SurfaceResidual::PointToPoint) return false;
@@ -126,7 +127,7 @@ class SurfaceRefiner {
     return here.along < kLargestShare * pairing_.spread(pair(beside)).along;
   }
 
-  /// The last word on a pose: overlap, residual and condition over all points.
+  /// The final assessment of a pose: overlap, residual and condition over all points.
   void judge(const RigidTransform& pose, RefinedSurface& result) {
     pairing_.take(std::numeric_limits<int>::max());
     const Pairing after = pair(pose);

@@ -8,12 +8,12 @@
 
 namespace corral {
 
-/// N points and where each should go: N x 3 both.
+/// N points and their targets: N x 3 both.
 struct MatchedPoints {
   Points source, target;
 };
 
-/// The robust point-to-point cost of a pose over N pairs, with what a step of Gauss and Newton needs. With
+/// The robust point-to-point cost of a pose over N pairs, with what a Gauss-Newton step needs. With
 /// e = R x + c - y, s = |e|^2 and J = [ -[R x]_x  I ] (the change of e under R <- exp([w]) R, c <- c + d):
 ///
 ///   cost = sum rho(s)      gradient = sum rho'(s) J^T e      normal = sum rho'(s) J^T J
@@ -27,7 +27,7 @@ struct RigidCost {
 
 RigidCost rigid_cost(const MatchedPoints& pairs, const RigidTransform& pose, const ScaledLoss& loss);
 
-/// dw / dq: the turn w of R <- exp([w]) R to which a small change of its unit quaternion (x, y, z, w) amounts.
+/// dw / dq: the rotation w of R <- exp([w]) R that corresponds to a small change of its unit quaternion (x, y, z, w).
 Eigen::Matrix<double, 3, 4> turn_by_quaternion(const Eigen::Quaterniond& rotation);
 
 /// [v]_x: the matrix with [v]_x a = v x a.

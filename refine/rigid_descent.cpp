@@ -18,7 +18,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// All pairs as seven residuals f of a pose (quaternion; shift in extents) with |f|^2 = E, J^T f its gradient and J^T J its
 /// normal matrix N = L L^T: J = L^T and f = (L^-1 gradient, the rest). The rest exists since rho(s) >= s rho'(s), concave
-/// as rho is. Ceres then sees the true robust cost at the price of one pass over the pairs.
+/// as rho is. Ceres then evaluates the true robust cost in one pass over the pairs.
 class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
  public:
   RigidCostFunction(const MatchedPoints& pairs, const ScaledLoss& loss, double extent)
@@ -31,7 +31,7 @@ class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
     Eigen::Matrix<double, 6, 1> unit = Eigen::Matrix<double, 6, 1>::Ones();
     unit.tail<3>().setConstant(extent_);
     const Eigen::LLT<Matrix6> factor(unit.asDiagonal() * at.normal * unit.asDiagonal());
-    if (factor.info() != Eigen::Success) return false;  // what keeps a weight fixes no pose
+    if (factor.info() != Eigen::Success) return false;  // the pairs with remaining weight determine no pose
     if (!std::isfinite(at.cost) || !factor.matrixLLT().allFinite()) return false;
 
     Eigen::Map<Eigen::Matrix<double, 7, 1>> f(residuals);
@@ -58,7 +58,7 @@ class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
 ceres::Solver::Options solver_options(double tolerance, int iterations) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;  // Ceres sums per thread: more threads, other bits
+  solver.num_threads = 1;  // Ceres sums per thread: the result would depend on their number
   solver.max_num_iterations = iterations;
   solver.function_tolerance = tolerance;
   solver.gradient_tolerance = 1e-14;
@@ -76,7 +76,7 @@ RigidDescent descend(const MatchedPoints& pairs, const RigidTransform& start, co
   const std::array<double*, 2> parameters{rotation.coeffs().data(), shift.data()};
   RigidCostFunction function(pairs, loss, extent);
   std::array<double, 7> residuals;
-  if (!function.Evaluate(parameters.data(), residuals.data(), nullptr)) return found;  // Ceres would print it
+  if (!function.Evaluate(parameters.data(), residuals.data(), nullptr)) return found;  // Ceres would print an error
 
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;

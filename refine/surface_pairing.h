@@ -10,9 +10,9 @@
 
 namespace corral {
 
-// What refine_surface() knows of two surfaces at a pose. Only sources include this.
+// The state of refine_surface() at a pose of two surfaces. Only sources include this.
 
-/// The pairs of one pose and what the rest needs of them.
+/// The pairs of one pose: their number and sums.
 struct Pairing {
   Eigen::Index points = 0, pairs = 0;
   Gram gram = Gram::Zero();                          ///< of steps in pr about the centre
@@ -26,7 +26,7 @@ struct Pairing {
   }
 };
 
-/// Mean squares of what lies between partners, across the surface and along it, pr^2.
+/// Mean squared distances between partners, across the surface and along it, pr^2.
 struct Spread {
   double across, along;
 };
@@ -34,21 +34,23 @@ struct Spread {
 /// Pairs the points of two surfaces, one pose after the other.
 class SurfacePairing {
  public:
-  /// What is referred to must outlive this. Of points to planes, normals of a pair have at least this cosine.
+  /// `surfaces` must outlive this. For points to planes, the normals of a pair have at least this cosine.
   SurfacePairing(const SurfacePair& surfaces, double least_cosine);
 
-  /// From now on every so manieth source point in spatial order, so that they are at most so many. Returns the step.
+  /// Uses every n-th source point in spatial order from now on, n the least for which these are at most `most_points`.
+  /// Returns n.
   Eigen::Index take(int most_points);
 
-  /// Root mean square distance of the taken points from their mean, pr.
+  /// Root mean square distance of the points used from their mean, pr.
   double size_pr() const { return size_pr_; }
 
   Pairing pair(SurfaceResidual residual, const RigidTransform& pose, double limit_pr);
 
-  /// Of these pairs, which must be the last, of points to planes.
+  /// For `last`, which must be the last pairing, of points to planes.
   Spread spread(const Pairing& last) const;
 
-  /// Of the point-to-plane equations of the last pairs, so many, with points and normals of the target; infinite if singular.
+  /// Condition of the point-to-plane equations of the `count` last pairs, with points and normals of the target; infinite if
+  /// singular.
   double condition(Eigen::Index count);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every registered grouper promises, whatever its method.
+// The contract of every registered grouper.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST_P(GrouperContract, SameAnswerTwiceOnAHardProblem) {
 }
 
 TEST_P(GrouperContract, EasyProblemIsSolved) {
-  // ss and nnsr see feature distances only, whose two classes overlap in the synthetic tables: of the right matches,
+  // ss and nnsr use feature distances only, whose two classes overlap in the synthetic tables: of the correct matches,
   // 4/5 pass the ratio test, and those with d1 < 0.35 or so are above any threshold that parts the classes.
   const std::map<std::string, double> lowest_recall = {{"ss", 0.5}, {"nnsr", 0.7}};
   const std::map<std::string, double> lowest_precision = {{"nnsr", 0.85}};

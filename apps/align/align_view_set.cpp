@@ -13,13 +13,13 @@
 namespace corral {
 namespace {
 
-/// Each finds pairs that the others miss; the surfaces decide between them.
+/// Each finds pairs that the others miss; the fit of the surfaces decides between them.
 const std::vector<std::pair<std::string, OptionOverrides>> kMethods = {
     {"ransac", {{"iterations", "100000"}}}, {"gc", {}}, {"si", {}}, {"hough", {}}};
 
 constexpr double kLeastTrust = 0.01;
 constexpr int kMostRounds = 10;
-constexpr double kStepsOfARound = 0.2;  // a pair laid from a prediction, beside one that is matched
+constexpr double kStepsOfARound = 0.2;  // cost of aligning a pair from a prediction, relative to matching it
 
 using PossiblePair = std::optional<AlignedPair>;
 
@@ -68,13 +68,13 @@ class SetAlignment {
     result_.pairs.push_back(std::move(pair));
   }
 
-  /// Lays pairs that do not agree on each other from where the graph has them. False if that adds no pair.
+  /// Aligns pairs that do not agree, starting from the poses of the graph. False if that adds no pair.
   bool predict() {
     std::vector<std::pair<int, int>> open;
     for (const auto& [a, b] : all_pairs(views_.size()))
       if (part(a) == part(b) && !has_agreeing(a, b)) open.emplace_back(a, b);
     const std::size_t before = result_.pairs.size();
-    measure(open, "laying again", kStepsOfARound, [&](int a, int b) -> PossiblePair {
+    measure(open, "aligning again", kStepsOfARound, [&](int a, int b) -> PossiblePair {
       PossiblePair pair = best_of(a, b, {result_.between(a, b)});
       if (!pair || is_known(*pair)) return std::nullopt;
       pair->predicted = true;
@@ -118,7 +118,7 @@ class SetAlignment {
       if (pair) result_.pairs.push_back(std::move(*pair));
   }
 
-  /// The start that lays the views on each other best, if any does.
+  /// The start that aligns the two views best, if any does.
   PossiblePair best_of(int a, int b, const std::vector<RigidTransform>& starts) const {
     PossiblePair best;
     for (const RigidTransform& start : starts) {
@@ -137,13 +137,13 @@ class SetAlignment {
     });
   }
 
-  /// What a pair weighs in the graph: little if the surfaces speak against it, but somebody may have a reason.
+  /// The weight of a pair in the graph: small if the surfaces contradict it; given poses are never dropped.
   double trust(const ViewAgreement& agreement) const {
     const bool is_contradicted = agreement.in_front > options_.most_in_front;
     return std::max(agreement.overlap, kLeastTrust) * (is_contradicted ? kLeastTrust : 1);
   }
 
-  /// Whether the pair stands there already, up to half a pr.
+  /// Whether the pair is listed already, up to half a pr.
   bool is_known(const AlignedPair& pair) const {
     const Points& points = views_.mesh(pair.pose.a).vertices;
     return std::any_of(result_.pairs.begin(), result_.pairs.end(), [&](const AlignedPair& other) {

@@ -13,20 +13,20 @@ namespace corral {
 
 struct AlignOptions {
   double least_overlap = 0.2;    ///< of two views that are paired
-  double most_in_front = 0.015;  ///< share of a view's points that the other may contradict
+  double most_in_front = 0.015;  ///< largest share of a view's points that the other may contradict
   MultiviewOptions graph;
 };
 
-/// A pose between two views and what speaks for it.
+/// A pose between two views and the evidence for it.
 struct AlignedPair {
   ViewPair pose;
   ViewAgreement agreement;  ///< under this pose
-  bool predicted = false;   ///< laid from where the alignment has the views, not from matches
+  bool predicted = false;   ///< found from the pose of the alignment, not from matches
   PairJudgement judgement;
 };
 
 struct AlignedViews {
-  std::vector<RigidTransform> world_from_view;  ///< the first view of each part is the world of the part
+  std::vector<RigidTransform> world_from_view;  ///< the first view of each part defines the world of the part
   std::vector<int> part;                        ///< per view: views that no pair connects are in different parts
   std::vector<AlignedPair> pairs;               ///< in the order of a, b
   bool converged = true;
@@ -34,24 +34,24 @@ struct AlignedViews {
   RigidTransform between(int a, int b) const;  ///< b_from_a
 };
 
-/// Called when a step begins: what it is, and its share of the whole.
+/// Called when a step begins, with its name and its share of the work.
 using AlignObserver = std::function<void(const std::string& what, double steps)>;
-double align_steps(int views);  ///< all shares together, about
+double align_steps(int views);  ///< approximate sum of all shares
 
 /// Aligns views of one object without any knowledge of where they were taken.
 ///
-/// Every pair is matched as the paper does; the poses of several groupers are refined, and lay the whole surfaces on each
-/// other. What one view contradicts (points in front of what it saw) is no pose; of the others the one with the largest
-/// overlap counts, if it reaches `least_overlap`. A pose graph (align_views) judges these pairs, each weighted by its
-/// overlap. Then pairs that do not agree, or had no pose, are laid on each other from where the graph has them, and the
-/// graph is solved again with what that adds, until nothing is added.
+/// Every pair is matched as in the paper; the poses of several groupers are refined and start the dense refinement of the
+/// whole surfaces. A pose that a view contradicts (it puts points in front of what the view saw) is dropped; of the others
+/// the one with the largest overlap is kept, if it reaches `least_overlap`. A pose graph (align_views) judges these pairs,
+/// each weighted by its overlap. Then pairs that do not agree, or had no pose, are aligned from the poses of the graph, and
+/// the graph is solved again with the added pairs, until none is added.
 ///
 /// Source    [huber2003fully] for visibility and a pose graph; the groupers are those of grouping/registry.h.
-/// Returns   pairs that contradict too, for somebody to look at. Deterministic for any number of threads.
+/// Returns   contradicting pairs too, for inspection. Deterministic for any number of threads.
 AlignedViews align_view_set(const ViewSet& views, const AlignOptions& options, const ParallelFor& parallel,
                             const AlignObserver& observer = {});
 
-/// The same with poses between the views that are given: no other is looked for.
+/// The same with given poses between the views; no others are searched for.
 AlignedViews align_view_set(const ViewSet& views, const std::vector<ViewPair>& poses, const AlignOptions& options);
 
 }  // namespace corral

@@ -18,7 +18,7 @@ const std::string& name_of(const std::vector<std::string>& names, int view) {
   return names[static_cast<std::size_t>(view)];
 }
 
-/// Whether somebody should look at a pair: nothing confirms it, or the rest of the graph denies it.
+/// Whether a pair should be inspected: nothing confirms it, or the rest of the graph contradicts it.
 bool is_doubtful(const AlignedPair& pair) { return pair.judgement.verdict != PairVerdict::Agrees; }
 
 std::vector<std::vector<int>> parts_of(const AlignedViews& aligned) {
@@ -52,7 +52,7 @@ std::vector<ViewPair> read_view_pairs(const std::string& path, const std::vector
     const auto view = [&](int column) {
       const auto found = std::find(names.begin(), names.end(), cell(column));
       if (found == names.end())
-        throw IoError(path, place, "found the view '" + cell(column) + "', expected the name of one that is aligned");
+        throw IoError(path, place, "found the view '" + cell(column) + "', expected the name of a view being aligned");
       return static_cast<int>(found - names.begin());
     };
     ViewPair pair{view(source), view(target), {}, 1};

@@ -13,9 +13,9 @@ namespace corral {
 namespace {
 
 constexpr double kCellPr = 2;              // of the depth images
-constexpr double kInFrontPr = 5;           // what noise and a pose that is nearly right do not reach
-constexpr double kHopelessInFront = 0.06;  // the finest level, most of the work, is not for poses that are worse
-constexpr double kFarPr = 1e5;             // a sensor beyond is as good as infinitely far away
+constexpr double kInFrontPr = 5;           // beyond noise and the error of a nearly correct pose
+constexpr double kHopelessInFront = 0.06;  // worse poses are dropped before the finest level, most of the work
+constexpr double kFarPr = 1e5;             // a sensor beyond this counts as infinitely far away
 
 }  // namespace
 

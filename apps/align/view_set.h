@@ -12,31 +12,31 @@
 
 namespace corral {
 
-/// How the surfaces of two views agree under a pose. No truth is needed for it.
+/// How well the surfaces of two views agree under a pose, without any ground truth.
 struct ViewAgreement {
   double overlap = 0;               ///< overlap_share within 2 pr
   std::optional<double> median_pr;  ///< median distance of the points of a in the overlap to the nearest of b
   double in_front = 0;  ///< share of the points of a view in front of what the other saw, the larger of both directions
 };
 
-/// Views of one object, each in the coordinates of its own sensor, with what it takes to lay one on another.
+/// Views of one object, each in the coordinates of its own sensor, prepared for aligning one with another.
 class ViewSet {
  public:
-  /// The meshes must outlive this; one without faces gets those of triangulate_view. `sensor`: where the sensor of every
-  /// view is, or the way it looks. Throws InvalidInput: a view that is not in front of its sensor, or in one place.
+  /// The meshes must outlive this; one without faces gets those of triangulate_view. `sensor`: position or viewing direction
+  /// of the sensor of every view. Throws InvalidInput: a view that is not in front of its sensor, or a single point.
   ViewSet(const std::vector<Mesh>& views, const ViewOptions& sensor, const ParallelFor& parallel);
 
   int size() const { return static_cast<int>(views_.size()); }
   double resolution() const { return resolution_; }  ///< mean of all views, mesh units per pr
   const Mesh& mesh(int view) const { return at(view).mesh; }
-  Eigen::Vector3d sensor(int view) const;  ///< a place from which the view can have been taken, mesh units
+  Eigen::Vector3d sensor(int view) const;  ///< a position from which the view may have been taken, mesh units
 
-  /// Whether one view contradicts the pose: the first thing to look at, since it is cheap.
+  /// Whether one view contradicts the pose: tested first, because it is cheap.
   double share_in_front(int a, int b, const RigidTransform& b_from_a) const;
   ViewAgreement agreement(int a, int b, const RigidTransform& b_from_a) const;
 
-  /// Lays the whole surface of a on that of b, from coarse to fine; absent where refine_surface gives no pose, or the
-  /// views contradict what its coarse levels give.
+  /// Aligns the whole surface of a with that of b, from coarse to fine; absent where refine_surface gives no pose, or the
+  /// views contradict the pose of its coarse levels.
   std::optional<RigidTransform> lay(int a, int b, const RigidTransform& start) const;
 
  private:

@@ -20,17 +20,17 @@ namespace {
 constexpr double kOutOfLine = 8;
 constexpr double kPowers[] = {10, 100, 1000};
 
-/// What is kept of a pair when its surfaces are gone.
+/// What is kept of a pair after its surfaces are released.
 struct PairNotes {
   std::vector<Finding> findings;
   bool is_complete = false;
   std::size_t source_content = 0, target_content = 0;
-  double source_part = 0, target_part = 0;  // of the diagonal that one pr is
+  double source_part = 0, target_part = 0;  // one pr as a share of the diagonal
   Points corners;                           // of the source's bounding box under the truth; none without a truth
   double resolution = 0;
 };
 
-/// The pair's surfaces under any motion, asked of the coarser side.
+/// The coincidence of the pair's surfaces under any motion, measured from the coarser side.
 class PairFit {
  public:
   PairFit(const SweptPair& pair, double resolution)
@@ -61,19 +61,19 @@ std::string judge_truth(const SweptPair& pair, double resolution) {
   const Coincidence given = fit(truth), inverted = fit(truth.inverse());
   const std::string both = ": " + in_words(inverted) + "; as given " + in_words(given);
   if (inverted.is_good() && (!given.is_good() || inverted.share > 1.5 * given.share))
-    return "the truth fits better inverted" + both;
+    return "the inverse of the truth fits better" + both;
   if (given.is_good()) return "";
   for (const double power : kPowers)
     for (const double factor : {power, 1 / power})
       if (fit({truth.rotation, factor * truth.translation}).is_good())
-        return "wrong units: the truth fits once its translation is multiplied by " + to_text(factor);
+        return "wrong units: the truth fits if its translation is multiplied by " + to_text(factor);
   return "the truth fits neither as given (" + in_words(given) + ") nor inverted (" + in_words(inverted) + ")";
 }
 
 bool is_near(double ratio, double power) { return ratio > 0.75 * power && ratio < 1.34 * power; }
 
-/// Whether two sides are one size in different units: extents may differ in a cluttered scene, resolutions in a thinned
-/// one, but hardly both by the same power of ten.
+/// Whether two sides have the same size in different units: extents may differ in a cluttered scene, resolutions in a
+/// thinned one, but hardly both by the same power of ten.
 std::string judge_units(double extent_ratio, double resolution_ratio) {
   for (const double power : kPowers)
     for (const double factor : {power, 1 / power})
@@ -105,7 +105,7 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   find("", units);
   const double ratio = notes.resolution / std::min(swept.source.resolution, swept.target.resolution);
   if (units.empty() && !(ratio <= kOutOfLine && ratio >= 1 / kOutOfLine))
-    find("", "pr out of line: " + to_text(notes.resolution) + " for the pair, " + to_text(swept.source.resolution) +
+    find("", "unusual pr: " + to_text(notes.resolution) + " for the pair, " + to_text(swept.source.resolution) +
                  " on the source, " + to_text(swept.target.resolution) + " on the target");
   if (!swept.truth) return notes;
   if (units.empty()) find(swept.pair.truth, judge_truth(swept, notes.resolution));
@@ -117,13 +117,13 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   return notes;
 }
 
-/// Meshes whose pr is an unusual part of their diagonal, among those on the same side.
+/// Meshes whose pr is an unusual share of their diagonal, among those on the same side.
 void compare_resolutions(const Dataset& dataset, std::vector<PairNotes>& notes, bool of_source) {
   std::map<std::string, double> parts;  // by file: a model of many pairs counts once
   const auto file = [&](std::size_t i) { return of_source ? dataset.pairs[i].source : dataset.pairs[i].target; };
   for (std::size_t i = 0; i < notes.size(); ++i)
     if (notes[i].is_complete) parts[file(i)] = of_source ? notes[i].source_part : notes[i].target_part;
-  if (parts.size() < 3) return;  // no rest to be out of line with
+  if (parts.size() < 3) return;  // too few to compare with
   std::vector<double> sorted;
   for (const auto& each : parts) sorted.push_back(each.second);
   std::sort(sorted.begin(), sorted.end());
@@ -134,7 +134,7 @@ void compare_resolutions(const Dataset& dataset, std::vector<PairNotes>& notes, 
     if (!(ratio <= kOutOfLine && ratio >= 1 / kOutOfLine))
       notes[i].findings.push_back(
           {dataset.pairs[i].name, file(i),
-           "pr out of line: its part of the diagonal is " + fixed(ratio, 3) + " times that of the others"});
+           "unusual pr: its share of the diagonal is " + fixed(ratio, 3) + " times that of the others"});
   }
 }
 
@@ -153,9 +153,8 @@ void compare_pairs(const Dataset& dataset, std::vector<PairNotes>& notes) {
     const auto same =
         std::find_if(first, last, [&](const auto& other) { return same_pair(notes[i], notes[other.second]); });
     if (same != last)
-      notes[i].findings.push_back(
-          {dataset.pairs[i].name, "",
-           "duplicate pair: the surfaces and the truth are those of " + dataset.pairs[same->second].name});
+      notes[i].findings.push_back({dataset.pairs[i].name, "",
+                                   "duplicate pair: same surfaces and truth as " + dataset.pairs[same->second].name});
     seen.emplace(key, i);
   }
 }

@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scene of the published set, as far as it is there.
+/// A scene of the published set, as far as its files exist.
 struct PublishedScene {
   std::string name;
   std::string model_file;  // absolute
   RigidTransform scene_from_model;
 };
 
-/// The value of MODEL_0 in a scene's configuration: the model's path on the machine of its publishers.
+/// The value of MODEL_0 in a scene's configuration: the model's path on its publishers' machine.
 std::string model_path(const std::string& path) {
   const std::string text = read_file(path);
   LineReader reader(path, text);
@@ -51,7 +51,7 @@ std::optional<std::string> find_model(const std::vector<std::string>& files, con
   return std::nullopt;
 }
 
-/// The scenes that are there, and a line for each that is not.
+/// The scenes that exist, and a line for each that does not.
 std::vector<PublishedScene> find_scenes(const std::string& folder, std::vector<std::string>& missing) {
   const std::vector<std::string> models = mesh_files((fs::path(folder) / "models").string());
   std::vector<PublishedScene> scenes;

@@ -40,10 +40,9 @@ struct TruePair {
 };
 
 bool is_view_name(const fs::path& path) {
-  static const std::set<std::string> endings = {".ply", ".off", ".obj", ".stl", ".xyz", ".pcd"};
   const std::string stem = path.stem().string(), ending = path.extension().string();
   const bool is_numbered = !stem.empty() && std::isdigit(static_cast<unsigned char>(stem.back()));
-  return endings.count(ending) > 0 || (ending == ".txt" && is_numbered);  // a list of points, not a page of text
+  return is_mesh_name(path.string()) || (ending == ".txt" && is_numbered);  // a list of points, not prose
 }
 
 /// "T-rex" of "T-rex_view001", "bun" of "bun045".
@@ -71,20 +70,21 @@ std::vector<Object> find_objects(const ImportU3mOptions& options) {
   for (const fs::path& file : files) {
     const std::string view = view_name(file.string());
     if (!names.insert(view).second)
-      throw IoError(file.string(), "", "a second view of this name, expected one file for each view");
+      throw IoError(file.string(), "", "is a second view of this name, expected one file for each view");
     const std::string name = options.object.empty() ? object_of(view) : options.object;
     Object& object = objects[name];
     object.name = name;
     object.views.push_back(view);
     object.files.push_back(file.string());
   }
-  if (objects.empty()) throw IoError(folder.string(), "", "no views, expected files such as chef_view001.ply or .txt");
+  if (objects.empty())
+    throw IoError(folder.string(), "", "has no views, expected files such as chef_view001.ply or .txt");
   std::vector<Object> list;
   for (auto& [name, object] : objects) list.push_back(std::move(object));
   return list;
 }
 
-/// The transforms of a folder, by what stands before and after "-to-" in their names.
+/// The transforms of a folder, by the parts of their names before and after "-to-".
 std::map<std::pair<std::string, std::string>, std::string> find_truths(const std::string& folder) {
   if (!fs::is_directory(folder)) throw IoError(folder, "", "no such folder, expected one of transforms");
   std::map<std::pair<std::string, std::string>, std::string> truths;
@@ -117,7 +117,8 @@ std::vector<TruePair> published_pairs(const Object& object, const std::string& f
   }
   std::vector<TruePair> list;
   for (const auto& [ends, truth] : pairs) list.push_back({ends.first, ends.second, truth});
-  if (list.empty()) throw IoError(folder, "", "no transforms of " + object.name + ", expected <view>-to-<frame>.xf");
+  if (list.empty())
+    throw IoError(folder, "", "has no transforms of " + object.name + ", expected <view>-to-<frame>.xf");
   return list;
 }
 

@@ -13,27 +13,27 @@ namespace corral {
 struct ImportU3mOptions {
   std::string folder;  ///< the views, here or in views/: meshes or lists of points (.txt, .xyz), <object>_view<number>
   std::string output;  ///< folder of the set
-  std::string truth;   ///< folder of published transforms; empty: the truth is made
-  std::string object;  ///< what all views show; empty: their names say it, without the number at their end
+  std::string truth;   ///< folder of published transforms; empty: the truth is computed by aligning the views
+  std::string object;  ///< the object that all views show; empty: their names without the final number
   ViewOptions sensor;  ///< of every view
   AlignOptions align;
   double least_overlap = 0.3, most_overlap = 0.9;  ///< of the pairs that are kept
   ParallelFor parallel = one_by_one;
 };
 
-/// How many steps of progress it has, about.
+/// The approximate number of progress steps.
 double import_steps(const ImportU3mOptions& options);
 
 /// Views of objects as a data set for registration [mian2006novel]: views/<view>.ply with faces, truth/<pair>.xf, and
 /// pairs.csv with the attributes model, source_view, target_view and overlap (percent, overlap_share within 2 pr).
 ///
-/// A truth that is made is that of align_view_set, for each object. A pair is left out if its own pose contradicts the others
-/// or its views contradict its truth. Published transforms are <view>-to-<anything>.xf into one frame for all views of an
+/// A computed truth is that of align_view_set, for each object. A pair is left out if its own pose contradicts the others or
+/// its views contradict its truth. Published transforms are <view>-to-<anything>.xf into one frame for all views of an
 /// object, or <view>-to-<view>.xf for pairs.
-/// Returns   what somebody should look at, one line each: pairs whose pose contradicts or is confirmed by no other, views
-///           that nothing connects with the rest, truths that the views contradict.
-/// Throws    IoError: no views, two of a name, no pair that is kept, a truth that cannot be read. The manifest is written
-///           last: what is half made has none.
+/// Returns   what should be inspected, one line each: pairs whose pose contradicts the others or is confirmed by none, views
+///           that are not connected with the rest, truths that the views contradict.
+/// Throws    IoError: no views, two of one name, no pair that is kept, a truth that cannot be read. The manifest is written
+///           last, so that an unfinished set has none.
 std::vector<std::string> import_u3m(const ImportU3mOptions& options, Progress& progress);
 
 }  // namespace corral

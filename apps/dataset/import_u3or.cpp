@@ -37,7 +37,7 @@ std::map<std::string, std::string> files_below(const std::string& folder) {
 
 bool begins_with(const std::string& text, const std::string& begin) { return text.rfind(begin, 0) == 0; }
 
-/// The mesh of a model, empty if there is none; several are a note.
+/// The mesh of a model, empty if there is none; several candidates are reported in a note.
 std::string find_model(const std::map<std::string, std::string>& files, const std::string& model,
                        std::vector<std::string>& notes) {
   std::string best;
@@ -108,7 +108,7 @@ std::vector<std::string> import_u3or(const ImportU3orOptions& options, Progress&
     return found == files.end() ? std::string() : found->second;
   };
   if (place("occlusion.txt").empty())
-    throw IoError(options.folder, "", "no occlusion.txt in it, expected the list of pairs");
+    throw IoError(options.folder, "", "has no occlusion.txt, expected the list of pairs");
   const std::vector<OcclusionLine> lines = read_occlusion_table(place("occlusion.txt"));
   std::vector<std::string> notes;
   std::map<std::string, std::string> models;
@@ -130,7 +130,7 @@ std::vector<std::string> import_u3or(const ImportU3orOptions& options, Progress&
   if (instances.empty()) throw IoError(options.folder, "", "no pair with its model, scene and truth");
   if (instances.size() < lines.size())
     notes.push_back(std::to_string(instances.size()) + " of the " + std::to_string(lines.size()) +
-                    " pairs of occlusion.txt are there");
+                    " pairs of occlusion.txt are complete");
   const SetFolder folder(options.output,
                          "import u3or\nfolder " + fs::absolute(options.folder).lexically_normal().string() + "\n");
   Dataset dataset = uwa_recognition_set("u3or");

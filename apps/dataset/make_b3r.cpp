@@ -19,7 +19,7 @@ std::vector<std::string> model_names(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     names.push_back(file_word(file));
     if (!seen.insert(names.back()).second)
-      throw IoError(file, "", "a second model of the name " + names.back() + ", expected each once");
+      throw IoError(file, "", "is a second model named " + names.back() + ", expected each name once");
   }
   return names;
 }

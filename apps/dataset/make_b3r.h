@@ -19,7 +19,7 @@ struct MakeB3rOptions {
 };
 
 /// A retrieval set after the published one: each model under random motions, at 9 levels of noise and 9 of density.
-/// Interrupted, it goes on where it was. One step of progress for each copy. Throws IoError, InvalidInput.
+/// An interrupted call continues when repeated. One progress step per copy. Throws IoError, InvalidInput.
 ///
 /// Source    [yang2017evaluation], [tombari2013performance].
 void make_b3r(const MakeB3rOptions& options, Progress& progress);

@@ -30,7 +30,7 @@ std::string package_file(const std::string& folder, const std::string& name, con
   return path;
 }
 
-/// What all makers have in common; `set` is their table of the plan and their folder.
+/// What all makers have in common; `set` names their table in the plan and their folder.
 template <class Made>
 Made made_set(const MakeDefaultOptions& options, const std::string& set) {
   Made made;
@@ -64,7 +64,7 @@ MakeU3mOptions registration(const MakeDefaultOptions& options) {
   return made;
 }
 
-/// The published instances, all files of which are there; none without a folder of scenes.
+/// The published instances whose files all exist; none without a folder of scenes.
 std::vector<PublishedInstance> real_instances(const MakeDefaultOptions& options) {
   std::vector<PublishedInstance> instances;
   if (options.scenes.empty()) return instances;
@@ -96,7 +96,7 @@ double default_steps(const MakeDefaultOptions& options) {
 }
 
 void make_default(const MakeDefaultOptions& options, Progress& progress) {
-  const auto instances = real_instances(options);  // what is missing is said before the work
+  const auto instances = real_instances(options);  // missing files are reported before the work
   make_b3r(retrieval(options), progress);
   make_u3or(recognition(options), progress);
   make_u3m(registration(options), progress);

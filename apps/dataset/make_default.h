@@ -17,11 +17,11 @@ struct MakeDefaultOptions {
   ParallelFor parallel = one_by_one;
 };
 
-/// How many steps of progress it has.
+/// The number of progress steps.
 double default_steps(const MakeDefaultOptions& options);
 
-/// All sets of the study from meshes that packages bring, as data/default.toml lays down, each a folder of its own. Throws
-/// IoError, naming a mesh that is not there.
+/// All sets of the study from meshes in Debian packages, as data/default.toml specifies, each in a folder of its own. Throws
+/// IoError naming a mesh that does not exist.
 void make_default(const MakeDefaultOptions& options, Progress& progress);
 
 }  // namespace corral

@@ -40,7 +40,7 @@ struct View {
   RigidTransform sensor_from_world;
 };
 
-/// Scans the model from every side and writes the views.
+/// Scans the model from all sides and writes the views.
 std::vector<View> make_views(const SetPart& part, const NamedMesh& model, const MakeU3mOptions& options) {
   const double spacing = point_resolution(model.mesh.vertices, options.parallel) / kScanResolution;
   const SurfaceTree surface(model.mesh);
@@ -59,7 +59,7 @@ std::vector<View> make_views(const SetPart& part, const NamedMesh& model, const 
   return views;
 }
 
-/// One of the pairs of views of a model, and what they share.
+/// A pair of views of a model, and their overlap.
 struct ViewPair {
   int source, target;
   double overlap;

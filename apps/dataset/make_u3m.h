@@ -28,7 +28,7 @@ struct MakeU3mOptions {
 ///
 /// A pair is two views of a model that overlap by 30 to 90 % (overlap_share at 2 pr, the mean of both); its attributes are
 /// model, source_view, target_view, and overlap in percent. The views are as dense as the model and in its units.
-/// Interrupted, it goes on where it was. One step of progress for each model.
+/// An interrupted call continues when repeated. One progress step per model.
 ///
 /// Source    [mian2006recognition] for the published views, [yang2017evaluation] for the range of overlaps.
 /// Throws    IoError, InvalidInput.

@@ -17,7 +17,7 @@
 namespace corral {
 namespace {
 
-constexpr double kDiagonal = 200;        // of every model, mm: about that of the published ones
+constexpr double kDiagonal = 200;        // of every model, mm: about as in the published set
 constexpr double kMostOcclusion = 0.95;  // of a pair
 constexpr double kPointsPerCell = 0.77;  // of a scene, for each cell of the mean area of the models; measured
 constexpr double kLeastPoints = 20000, kMostPoints = 60000;  // of a scene, about
@@ -147,7 +147,7 @@ std::string row_text(const std::string& what, const std::array<double, 7>& edges
 
 VisibilityCounts make_u3or(const MakeU3orOptions& options, Progress& progress) {
   if (options.scenes < 1) throw InvalidInput("make_u3or", "scenes", options.scenes, "at least 1");
-  if (options.models.empty()) throw InvalidInput("make_u3or", "models", "none", "at least one, better 5 or more");
+  if (options.models.empty()) throw InvalidInput("make_u3or", "models", "none", "at least one, preferably 5 or more");
   require_noise("make_u3or", options.noise_pr);
   return RecognitionSet(options, read_models(options.models)).make(progress);
 }
@@ -155,7 +155,7 @@ VisibilityCounts make_u3or(const MakeU3orOptions& options, Progress& progress) {
 std::string to_text(const VisibilityCounts& counts) {
   return row_text("occlusion", VisibilityCounts::kOcclusion, counts.occlusion) +
          row_text("clutter", VisibilityCounts::kClutter, counts.clutter) +
-         "in no bin of one of the two: " + std::to_string(counts.outside);
+         "outside the bins of one of the two: " + std::to_string(counts.outside);
 }
 
 }  // namespace corral

@@ -29,14 +29,14 @@ struct MakeU3orOptions {
 ///
 /// A pair is a model of which a scene shows at least 5 %; its attributes are scene, model, and clutter and occlusion in
 /// percent (measure_visibility). The scenes are as dense as the models on average, within 20,000 to 60,000 points or so.
-/// Interrupted, it goes on where it was. Three steps of progress for each scene.
+/// An interrupted call continues when repeated. Three progress steps per scene.
 ///
 /// Source    [mian2006recognition], [mian2010repeatability].
 /// Returns   how the pairs spread over the bins.
 /// Throws    IoError, InvalidInput.
 VisibilityCounts make_u3or(const MakeU3orOptions& options, Progress& progress);
 
-/// That in words, three lines without the end of the last.
+/// The same in words: three lines, the last without its line break.
 std::string to_text(const VisibilityCounts& counts);
 
 }  // namespace corral

@@ -13,7 +13,7 @@
 namespace corral {
 namespace {
 
-constexpr double kRightMatch = 4;  // pr
+constexpr double kCorrectMatch = 4;  // pr
 
 std::optional<double> percent_without(const std::optional<double>& shared) {
   if (!shared) return std::nullopt;
@@ -23,10 +23,10 @@ std::optional<double> percent_without(const std::optional<double>& shared) {
 void measure_matches(const SweptPair& pair, double resolution, PairMeasures& measures) {
   MatchSettings settings;
   settings.resolution = to_text(resolution);
-  settings.threads = 1;  // the pairs are already spread
+  settings.threads = 1;  // the pairs already run in parallel
   const CorrespondenceSet matches = match_pair(pair.source.mesh, pair.target.mesh, settings).matches;
   if (matches.size() == 0) return;
-  const std::vector<bool> labels = label_inliers(matches, *pair.truth, kRightMatch);
+  const std::vector<bool> labels = label_inliers(matches, *pair.truth, kCorrectMatch);
   measures.inlier_ratio =
       100 * static_cast<double>(std::count(labels.begin(), labels.end(), true)) / static_cast<double>(labels.size());
   if (const auto share = frame_repeatability(matches, *pair.truth, labels).share())

@@ -16,10 +16,10 @@
 namespace corral {
 namespace {
 
-/// Pairs whose meshes are in memory at once: enough to keep the threads busy.
+/// Number of pairs whose meshes are in memory at once: enough to keep the threads busy.
 constexpr int kBlock = 16;
 
-/// What an IoError says, without the name of the file that it begins with.
+/// The text of an IoError without the file name at its start.
 std::string without_path(const std::string& message, const std::string& path) {
   return message.rfind(path, 0) == 0 ? message.substr(path.size() + 2) : message;
 }

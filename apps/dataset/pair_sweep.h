@@ -14,7 +14,7 @@
 
 namespace corral {
 
-/// A mesh of a data set on its way past, or why there is none.
+/// A mesh of a data set, or why it cannot be used.
 struct SweptSurface {
   std::string problem;  ///< empty if the rest can be used
   Mesh mesh;
@@ -27,13 +27,13 @@ struct SweptPair {
   const DatasetPair& pair;
   const SweptSurface &source, &target;
   std::optional<RigidTransform> truth;
-  std::string truth_problem;  ///< why there is none although one is named
+  std::string truth_problem;  ///< why the named one cannot be used
 
   bool is_complete() const { return source.problem.empty() && target.problem.empty(); }
 };
 
 /// Calls visit(i, pair i) for every pair of the set, on any threads and in any order; each mesh is read once and kept as
-/// long as a pair needs it. Nothing that is wrong with a file stops the sweep.
+/// long as a pair needs it. An error in a file does not stop the sweep.
 void sweep_pairs(const Dataset& dataset, const ParallelFor& parallel, Progress& progress,
                  const std::function<void(int, const SweptPair&)>& visit);
 

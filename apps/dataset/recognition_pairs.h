@@ -13,7 +13,7 @@ namespace corral {
 /// A model in a scene as published.
 struct PublishedInstance {
   std::string model, scene;            ///< names
-  std::string model_file, scene_file;  ///< meshes; they stay where they are
+  std::string model_file, scene_file;  ///< meshes; used where they are
   std::string truth;                   ///< scene_from_model as the text of a transform file
   std::string occlusion;               ///< percent, as published
 };
@@ -29,7 +29,7 @@ const std::vector<std::string>& recognition_attributes();
 void add_recognition_pairs(const std::vector<PublishedInstance>& instances, const SetFolder& folder, Dataset& dataset,
                            const ParallelFor& parallel, Progress& progress);
 
-/// A set without pairs, with all that the two published papers are owed.
+/// A set without pairs, with provenance, licence and citations of the published set.
 Dataset uwa_recognition_set(const std::string& name);
 
 }  // namespace corral

@@ -12,11 +12,11 @@
 
 namespace corral {
 
-/// A moved copy of a model whose 18 scenes are to be made.
+/// A moved copy of a model, from which 18 scenes are made.
 struct RetrievalScene {
-  std::string name;        ///< as it begins the names of its pairs
+  std::string name;        ///< the names of its pairs begin with it
   std::string model;       ///< name of the model
-  std::string model_file;  ///< as it is to stand in pairs.csv
+  std::string model_file;  ///< as written to pairs.csv
   RigidTransform scene_from_model;
 };
 
@@ -25,7 +25,7 @@ const std::vector<std::string>& retrieval_attributes();
 
 /// Writes a scene at the 9 levels of noise (normal, 0.05 .. 0.45 pr on every coordinate) and the 9 levels of density (a
 /// random subset of 0.9 .. 0.1 of the vertices, without noise), each from a seed of its own, and the truth. pr is that of
-/// the clean model. What the folder has stays. Returns the pairs.
+/// the clean model. Existing files stay. Returns the pairs.
 ///
 /// Throws    IoError for a model of fewer than 100 vertices.
 /// Source    [yang2017evaluation] for the levels; it does not say how the density was lowered.

@@ -18,11 +18,11 @@ SetFolder::SetFolder(const std::string& folder, const std::string& recipe) : fol
   make_folder(folder);
   const std::string note = path(kRecipeName);
   if (!fs::exists(note) && fs::exists(path("dataset.toml")))
-    throw IoError(folder, "", "holds a data set that was not made here, expected an empty folder");
+    throw IoError(folder, "", "holds a data set that this command did not make, expected an empty folder");
   if (fs::exists(note) && read_file(note) != recipe)
     throw IoError(folder, "",
-                  "holds a data set made otherwise (see " + std::string(kRecipeName) +
-                      "), expected an empty folder or the same input and options");
+                  "holds a data set made from other input or options (see " + std::string(kRecipeName) +
+                      "), expected an empty folder or the same ones");
   check_writable(path("dataset.toml"));
   if (fs::exists(note))
     remove_leftovers(folder);
@@ -49,7 +49,7 @@ std::vector<std::string> mesh_files(const std::string& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (is_mesh_name(entry->path().string()) && entry->is_regular_file(error)) files.push_back(entry->path().string());
   if (error) throw IoError(folder, "", "cannot be read as a folder (" + error.message() + ")");
-  if (files.empty()) throw IoError(folder, "", "no meshes, expected files that end in " + mesh_endings());
+  if (files.empty()) throw IoError(folder, "", "has no meshes, expected files that end in " + mesh_endings());
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -8,16 +8,16 @@
 
 namespace corral {
 
-/// A data set on its way into a folder. Its recipe is written first, its manifest last: an interrupted making goes on where
-/// it was, and what is half made has no manifest. Files appear whole or not at all.
+/// The folder of a data set that is being made. Its recipe is written first, its manifest last: an interrupted call continues
+/// when repeated, and an unfinished set has no manifest. Files appear whole or not at all.
 class SetFolder {
  public:
-  /// `recipe`: all that the files depend on, in lines. Makes the folder. Throws IoError if it holds a set of another recipe,
-  /// or one that no recipe made, or cannot be written to.
+  /// `recipe`: everything that the files depend on, in lines. Creates the folder. Throws IoError if it holds a set of another
+  /// recipe or without a recipe, or cannot be written to.
   SetFolder(const std::string& folder, const std::string& recipe);
 
   std::string path(const std::string& file) const;  ///< of a file of the set
-  bool has(const std::string& file) const;          ///< from the making before this one
+  bool has(const std::string& file) const;          ///< from an earlier call
   void put(const std::string& file, const std::string& content) const;
   void finish(const Dataset& dataset) const;  ///< writes the manifest
 
@@ -28,12 +28,12 @@ class SetFolder {
 /// The mesh files in a folder, sorted by name. Throws IoError if the folder cannot be read or holds none.
 std::vector<std::string> mesh_files(const std::string& folder);
 
-/// A number that changes with the content of a file, for recipes.
+/// A hash of the content of a file, for recipes.
 std::string checksum(const std::string& path);
 
-/// A text with - for each letter that no name of a pair may have.
+/// A text with - for each character that the name of a pair may not contain.
 std::string pair_word(std::string text);
-/// The same of the name of a file, without folders and ending.
+/// The same for the name of a file, without folders and ending.
 std::string file_word(const std::string& file);
 
 }  // namespace corral

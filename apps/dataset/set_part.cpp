@@ -12,7 +12,7 @@
 namespace corral {
 namespace {
 
-/// What pairs.csv would hold if these were all.
+/// The pairs.csv of a set of just these pairs.
 std::string pairs_text(const std::vector<std::string>& attributes, const std::vector<DatasetPair>& pairs) {
   Dataset part;
   part.attributes = attributes;
@@ -26,7 +26,7 @@ void SetPart::add_to(Dataset& dataset) const {
   const std::string path = folder_.path(table_);
   const CsvTable table = read_csv(path), expected = parse_csv(path, pairs_text(dataset.attributes, {}));
   if (table.header != expected.header)
-    throw IoError(path, "header", "not that of the pairs of a part of the set, expected the file as it was made");
+    throw IoError(path, "header", "is not that of a table of pairs of the set, expected the file as it was made");
   for (const auto& cells : table.rows)
     dataset.pairs.push_back({cells[0], cells[1], cells[2], cells[3], {cells.begin() + 4, cells.end()}});
 }
@@ -63,8 +63,9 @@ std::vector<NamedMesh> read_models(const std::vector<std::string>& files) {
     NamedMesh model{file_word(file), read_mesh(file)};
     const auto has_its_name = [&](const NamedMesh& other) { return other.name == model.name; };
     if (std::any_of(models.begin(), models.end(), has_its_name))
-      throw IoError(file, "", "a second model of the name " + model.name + ", expected each once");
-    if (model.mesh.triangles.rows() == 0) throw IoError(file, "", "no faces, expected a surface that rays can meet");
+      throw IoError(file, "", "is a second model named " + model.name + ", expected each name once");
+    if (model.mesh.triangles.rows() == 0)
+      throw IoError(file, "", "has no faces, expected a surface that rays can meet");
     models.push_back(std::move(model));
   }
   return models;

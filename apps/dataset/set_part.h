@@ -6,8 +6,8 @@
 
 namespace corral {
 
-/// A part of a data set in the making, such as a scene with its truths: made in one go, and finished once the table of its
-/// pairs is there. An interrupted making keeps the parts that are finished.
+/// A part of a data set that is being made, such as a scene with its truths: it is finished when the table of its pairs
+/// exists. An interrupted call keeps the finished parts.
 class SetPart {
  public:
   /// `table`: the file of the set that holds the pairs of the part, with the columns of pairs.csv. Both must outlive this.
@@ -15,13 +15,13 @@ class SetPart {
 
   bool is_finished() const { return folder_.has(table_); }
 
-  /// Adds the pairs of the finished part to the set. Throws IoError if the table is not what `finish` writes.
+  /// Adds the pairs of the finished part to the set. Throws IoError if the table is not as `finish` writes it.
   void add_to(Dataset& dataset) const;
 
-  /// Writes a file of the part, unless it is there from an earlier making.
+  /// Writes a file of the part, unless an earlier call has written it.
   void put(const std::string& file, const std::string& content) const;
 
-  /// Writes the table: nothing of the part is made again. `attributes` are those of the set.
+  /// Writes the table, which finishes the part. `attributes` are those of the set.
   void finish(const std::vector<std::string>& attributes, const std::vector<DatasetPair>& pairs) const;
 
  private:
@@ -29,25 +29,25 @@ class SetPart {
   std::string table_;
 };
 
-/// A mesh that scans are to be made of, and the name that its files begin with.
+/// A mesh to be scanned, and the name that its files begin with.
 struct NamedMesh {
   std::string name;
   Mesh mesh;
 };
 
-/// What the recipe says of them: a line each.
+/// Their lines in the recipe.
 std::string recipe_lines(const std::vector<std::string>& files, const std::vector<NamedMesh>& models);
 
-/// A letter and the place in a list, counted from 1 and with two digits at least: v01, v02, ...
+/// A letter and the position in a list, counted from 1, with at least two digits: v01, v02, ...
 std::string numbered(char letter, int index);
 
-/// A share of 1 in percent, to two digits after the point.
+/// A share of 1 in percent, with two decimals.
 std::string percent_text(double share);
 
 /// Throws InvalidInput unless the noise of a scan is finite and at least 0.
 void require_noise(const std::string& who, double noise_pr);
 
-/// Reads them all. Throws IoError as read_mesh does, for a mesh without faces, and if two have one name.
+/// Reads them all. Throws IoError as read_mesh does, for a mesh without faces, and if two have the same name.
 std::vector<NamedMesh> read_models(const std::vector<std::string>& files);
 
 }  // namespace corral

@@ -67,7 +67,7 @@ std::string png_bytes(const Image& image) {
     if (png_image_write_to_memory(&header, memory, &size, 0, image.bytes.data(), 0, nullptr) == 0)
       throw std::runtime_error(std::string("a picture cannot be written as PNG: ") + header.message);
   };
-  encode(nullptr);  // only counts
+  encode(nullptr);  // only computes the size
   bytes.resize(size);
   encode(bytes.data());
   bytes.resize(size);

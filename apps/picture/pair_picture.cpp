@@ -14,13 +14,13 @@ const Color kWhite(255, 255, 255), kBlack(0, 0, 0), kGrey(110, 110, 110), kSurfa
 const Color kGreen(0, 158, 115), kRed(222, 60, 20), kBlue(0, 114, 178), kFaint(95, 105, 150);
 const Color kSourceColor(245, 170, 50), kTargetColor(95, 165, 235);
 
-/// How the two surfaces are turned.
+/// The orientation of the two surfaces.
 struct Views {
   Eigen::Matrix3d view_from_source, view_from_target;
 };
 
-/// A surface of which more than half faces one side is a view, best seen from there; else the source decides. The truth
-/// turns both alike.
+/// A surface of which more than half faces one side is a view, best seen from there; else the source decides. With the truth
+/// both are oriented alike.
 Views choose_views(const PairScene& scene) {
   const ChosenView source = choose_view(scene.source), target = choose_view(scene.target);
   if (!scene.truth) return {source.view_from_mesh, target.view_from_mesh};
@@ -40,7 +40,7 @@ struct Layout {
   double margin, letters, top;
 };
 
-/// Words beside each other above the picture, smaller if they would not fit.
+/// Words side by side above the picture, smaller if they would not fit.
 void draw_title(Image& image, const std::vector<TitlePart>& parts) {
   const Layout layout(image.width);
   double length = 0;
@@ -53,7 +53,7 @@ void draw_title(Image& image, const std::vector<TitlePart>& parts) {
   }
 }
 
-/// Pixels per mesh unit, so that something of this extent fits; 1 for a single place.
+/// Pixels per mesh unit, so that something of this extent fits; 1 for a single point.
 double fitting_scale(double width, double height, const Eigen::Vector2d& extent) {
   const double scale = std::min(width / extent.x(), height / extent.y());
   return std::isfinite(scale) ? scale : 1;
@@ -65,7 +65,7 @@ struct Base {
   Projection source, target;
 };
 
-/// Side by side in one scale; the picture becomes as high as that is.
+/// Side by side at one scale; the picture gets the height of the taller one.
 Base draw_base(const PairScene& scene, int width) {
   const Views views = choose_views(scene);
   const Eigen::AlignedBox3d source = view_box(scene.source.mesh.vertices, views.view_from_source);
@@ -98,37 +98,37 @@ void draw_matches(Image& image, const PairScene& scene, const Base& base, const 
 }
 
 Image match_picture(const PairScene& scene, const Base& base, const DrawnGroup& group) {
-  Indices right, wrong, missed;
+  Indices correct, incorrect, missed;
   for (int row = 0; row < scene.source_points.rows(); ++row) {
-    const bool is_right = scene.right.empty() || scene.right[static_cast<std::size_t>(row)];
+    const bool is_correct = scene.right.empty() || scene.right[static_cast<std::size_t>(row)];
     if (std::binary_search(group.selected.begin(), group.selected.end(), row))
-      (is_right ? right : wrong).push_back(row);
-    else if (is_right)
+      (is_correct ? correct : incorrect).push_back(row);
+    else if (is_correct)
       missed.push_back(row);
   }
   Image image = base.image;
   const auto draw = [&](const Indices& rows, const Color& color, double most) {
-    // The more lines there are of a kind, the more of what lies below shines through.
+    // The more lines there are of a kind, the more transparent they are.
     const double opacity = std::clamp(8 / std::sqrt(1.0 + static_cast<double>(rows.size())), 0.22, most);
     draw_matches(image, scene, base, rows, {color, image.width / 1000.0, opacity});
   };
   draw(missed, kFaint, scene.right.empty() ? 0.25 : 0.5);
-  if (wrong.size() > right.size()) draw(wrong, kRed, 0.9);  // the fewer on top
-  draw(right, scene.right.empty() ? kBlue : kGreen, 0.9);
-  if (wrong.size() <= right.size()) draw(wrong, kRed, 0.9);
+  if (incorrect.size() > correct.size()) draw(incorrect, kRed, 0.9);  // the fewer on top
+  draw(correct, scene.right.empty() ? kBlue : kGreen, 0.9);
+  if (incorrect.size() <= correct.size()) draw(incorrect, kRed, 0.9);
   const auto count = [](const Indices& rows, const std::string& word) {
     return std::to_string(rows.size()) + " " + word;
   };
   if (scene.right.empty())
     draw_title(image, {{group.title + "    ", kBlack},
-                       {count(right, "selected"), kBlue},
+                       {count(correct, "selected"), kBlue},
                        {", ", kBlack},
                        {count(missed, "not"), kFaint}});
   else
     draw_title(image, {{group.title + "    ", kBlack},
-                       {count(right, "true"), kGreen},
+                       {count(correct, "correct"), kGreen},
                        {",  ", kBlack},
-                       {count(wrong, "false"), kRed},
+                       {count(incorrect, "incorrect"), kRed},
                        {",  ", kBlack},
                        {count(missed, "missed"), kFaint}});
   return image;
@@ -145,7 +145,7 @@ std::vector<Image> match_pictures(const PairScene& scene, const std::vector<Draw
 
 std::vector<Image> alignment_pictures(const PairScene& scene, const std::vector<DrawnPose>& poses, int width) {
   const Eigen::Matrix3d view = choose_views(scene).view_from_target;
-  // A pose that is far off may carry the source out of the picture, but not make everything small.
+  // A pose with a large error may move the source out of the picture, but not shrink everything.
   Eigen::AlignedBox3d box = view_box(scene.target.mesh.vertices, view), most = box;
   most.min() -= 0.3 * box.sizes();
   most.max() += 0.3 * box.sizes();

@@ -8,7 +8,7 @@
 namespace corral {
 namespace {
 
-/// Twice the area of the triangle a, b, p; its sign says on which side of a b the point lies.
+/// Twice the area of the triangle a, b, p; its sign is the side of a b on which the point lies.
 double side(const Place& a, const Place& b, const Place& p) {
   return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
 }

@@ -7,20 +7,19 @@
 
 namespace corral {
 
-/// A point of a surface on its way to a picture.
+/// A point of a surface, projected to a picture.
 struct Corner {
   Eigen::Vector3d place;  ///< x and y in pixels as in a picture, z towards the viewer
   Color color;
 };
 
-/// Surfaces on a picture, the nearest in front: a buffer of depths with nine samples a pixel. The same calls in the
-/// same order give the same bytes.
+/// A depth buffer with nine samples per pixel. The same calls in the same order give the same bytes.
 class Raster {
  public:
   Raster(int width, int height, const Color& background);
 
-  /// Fills the samples inside a triangle, its border included; colours run evenly between the corners. What lies
-  /// outside of the picture or behind what is there already is left out.
+  /// Fills the samples inside a triangle, its border included; colours are interpolated between the corners. Samples outside
+  /// the picture or behind nearer ones are skipped.
   void draw_triangle(const Corner& a, const Corner& b, const Corner& c);
 
   /// Fills a disc that faces the viewer.

@@ -11,8 +11,8 @@
 namespace corral {
 namespace {
 
-/// How bright a surface is whose normal is this one in view axes: a key light from above on the left, a weak one from
-/// the right, and less light where it turns away. Both sides of a surface are alike.
+/// The brightness of a surface with this normal in view axes: a key light from above on the left, a weak one from the right,
+/// and less light where it turns away. Both sides of a surface look the same.
 float brightness(Eigen::Vector3d normal) {
   if (normal.z() < 0) normal = -normal;
   static const Eigen::Vector3d key = Eigen::Vector3d(-0.45, 0.6, 0.75).normalized();
@@ -28,7 +28,7 @@ Eigen::Matrix3d view_of(const Eigen::Vector3d& to_viewer, const Eigen::Vector3d&
   return view;
 }
 
-/// What area looks where: the normals of the faces around every vertex weighted by area, or of the points of a cloud.
+/// Oriented area: the area-weighted normals of the faces around every vertex, or the normals of the points of a cloud.
 Points area_sums(const PaintedSurface& surface) {
   return surface.mesh.triangles.rows() == 0 ? surface.normals : area_weighted_normals(surface.mesh);
 }

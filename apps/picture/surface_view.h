@@ -9,11 +9,11 @@
 
 namespace corral {
 
-/// A surface as pictures need it.
+/// A surface prepared for drawing.
 struct PaintedSurface {
   Mesh mesh;
   Points normals;         ///< unit length or zero, one per vertex
-  double resolution = 0;  ///< mesh units per pr: how large the dots of a cloud are
+  double resolution = 0;  ///< mesh units per pr: the size of the dots of a cloud
 };
 
 /// With the normals of its faces, or estimated ones for a cloud.
@@ -27,7 +27,7 @@ struct Projection {
   Eigen::Matrix3d view_from_mesh = Eigen::Matrix3d::Identity();  ///< rows point right, up, and to the viewer
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();              ///< of the mesh, in view axes
   double scale = 1;                                              ///< pixels per mesh unit
-  Place place = Place::Zero();                                   ///< where the middle comes to lie
+  Place place = Place::Zero();                                   ///< position of the middle in the picture
 
   Eigen::Vector3d operator()(const Eigen::Vector3d& point) const;  ///< x, y in pixels, z towards the viewer
 };
@@ -40,8 +40,8 @@ struct ChosenView {
   double facing = 0;  ///< share of the area that faces the viewer, foreshortened; above 1/2 only for open surfaces
 };
 
-/// A view in which the surface shows itself well: level, with y up, from the first of eight sides from which at least
-/// nine tenths of the most area faces the viewer; from above or below if that shows half as much again.
+/// A view that shows the surface well: level, with y up, from the first of eight sides from which at least nine tenths of the
+/// largest visible area face the viewer; from above or below if that shows half as much again.
 ChosenView choose_view(const PaintedSurface& surface);
 
 /// Draws the surface: smoothly shaded faces, or a disc for every point of a cloud.

@@ -50,7 +50,7 @@ struct DescribedSurface {
 };
 
 /// The table of matches of two described surfaces: a row per source keypoint, in their order, with its nearest target
-/// keypoint. Several rows may share a target, unless mutual; there is no cut.
+/// keypoint. Several rows may share a target, unless mutual; no match is discarded.
 CorrespondenceSet make_correspondences(const DescribedSurface& source, const DescribedSurface& target,
                                        double resolution, const MatchingOptions& options = {},
                                        const ParallelFor& parallel = one_by_one);

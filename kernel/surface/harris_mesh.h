@@ -40,7 +40,7 @@ struct HarrisMeshOptions {
   }
 };
 
-/// Harris 3D on a mesh: vertices where a quadratic patch fitted to their surroundings bends in both directions.
+/// Harris 3D on a mesh: vertices where a quadratic patch fitted to their neighbourhood curves in both directions.
 ///
 ///   f(x, y) = p1/2 x^2 + p2 x y + p3/2 y^2 + p4 x + p5 y + p6             least squares over the neighbourhood of v
 ///   A = p4^2 + s (p1^2 + p2^2)    B = p5^2 + s (p2^2 + p3^2)    C = p4 p5 + s (p1 p2 + p2 p3)    s = sigma^2 = 2
@@ -64,9 +64,9 @@ struct HarrisMeshOptions {
 ///           over 2000 vertices on average.
 /// Departs   From the program of the authors: B takes p5, not p4; k rings are k, not k + 1; `fraction` never asks for more
 ///           than there are candidates. From both: lengths are divided by the reach of the neighbourhood, so that sigma has
-///           a meaning and the unit of the mesh has none; what is flat to rounding, or bends one way (an edge, with a
-///           response below 0), is no candidate however few there are; ties go to the lower index. Degenerate and
-///           non-manifold triangles join nothing.
+///           a meaning and the unit of the mesh has none; a vertex that is flat up to rounding, or curves in one direction
+///           only (an edge, with a response below 0), is never a candidate; ties go to the lower index. Degenerate and
+///           non-manifold triangles connect no vertices.
 /// The bounding box is that of the axes, as in both: its diagonal, and with it `adaptive` and `clustering`, changes when a
 /// mesh is turned (at most by a factor of sqrt 3). All else stays as it is under rigid motion and change of scale.
 ///

@@ -5,10 +5,10 @@
 
 namespace corral {
 
-/// Where a surface is described.
+/// The vertices at which a surface is described.
 struct Keypoints {
   Indices vertices;    ///< ascending
-  int candidates = 0;  ///< local maxima that they were selected from
+  int candidates = 0;  ///< local maxima from which they were selected
 };
 
 }  // namespace corral

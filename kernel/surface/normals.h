@@ -13,14 +13,14 @@ struct NormalOptions {
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();  ///< mesh units
 };
 
-/// Unit normals, V x 3: the direction of least variance of the k nearest vertices, turned to the side of the area-weighted
-/// sum of the face normals where that is not zero, else towards the sensor. A row is zero where fewer than 3 distinct
-/// neighbours, or all on one line, give no direction.
+/// Unit normals, V x 3: the direction of least variance of the k nearest vertices, oriented by the area-weighted sum of the
+/// face normals where that is not zero, else towards the sensor. A row is zero where there are fewer than 3 distinct
+/// neighbours, or all lie on one line.
 ///
 /// Source    [rusu2009thesis]; k = 20 after the program of [yang2017evaluation].
 /// Cost      O(V) time where vertices lie evenly on a surface. Any number of threads gives the same bits.
-/// Departs   The authors turn every normal towards the origin, which on closed models flips neighbours against each other;
-///           with faces we take their side, on a noisy mesh that of its own faces.
+/// Departs   The authors turn every normal towards the origin, which on closed models gives neighbours opposite signs; with
+///           faces the normals follow them, on a noisy mesh its own noisy faces.
 /// Throws    InvalidInput for fewer than 3 neighbours.
 /// Plain form  tests/support/reference_surface.h
 Points estimate_normals(const Mesh& mesh, const NormalOptions& options = {}, const ParallelFor& parallel = one_by_one);

@@ -43,16 +43,16 @@ struct ShotOptions {
 /// x and z are the eigenvectors of the largest and the smallest eigenvalue, turned to the side where at least half of the
 /// support lies; on an exact tie to the side of most of the five vertices around the median distance. y = z cross x.
 /// Source    [tombari2010shot].
-/// Returns   absent for fewer than 5 vertices, or where all lie so that no frame is finite.
+/// Returns   absent for fewer than 5 vertices, or where no finite frame exists.
 /// Plain form  tests/support/reference_shot.h
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
 /// The SHOT histogram of a support, unit length; absent if no vertex with a normal is in it.
 ///
-/// For each vertex the cosine between its normal and the frame's z axis goes into the volume that it lies in. Along each of
-/// the four axes (cosine, radius, elevation, azimuth) the bin beside gets a share that grows with the distance from the
-/// centre of the own bin, up to a half; beyond the last centre of an axis that ends the share is lost.
-///   additive  the four shares are added one axis at a time, and the own bin gets the rest of each
+/// For each vertex the cosine between its normal and the frame's z axis is counted in the volume that the vertex lies in.
+/// Along each of the four axes (cosine, radius, elevation, azimuth) the neighbouring bin gets a share that grows with the
+/// distance from the centre of the vertex's own bin, up to a half; beyond the last centre of a bounded axis the share is lost.
+///   additive  the four shares are added one axis at a time, and the vertex's own bin gets the rest of each
 ///   product   the shares multiply, over up to 16 bins
 ///   pcl-bug   additive, with an error of PCL: what bin 9 of the cosine gives to bin 10 goes to bin 0 (and
 ///             describe_shot() leaves vertices at exactly R out of the support)
@@ -65,7 +65,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               ShotForm form = ShotForm::Additive);
 
-/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows take no part). Any number of threads, and any
+/// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows are ignored). Any number of threads, and any
 /// numbering of the vertices, gives the same bits.
 /// Throws    InvalidInput if an option, the resolution or a keypoint is out of range, or the normals are not as many as
 ///           the vertices.

@@ -10,12 +10,12 @@
 
 namespace corral {
 
-/// How far the neighbourhood of a vertex reaches over a mesh. A length along the edges is that of the shortest among the
-/// paths with the fewest edges.
+/// How far the neighbourhood of a vertex extends over a mesh. A path length is that of the shortest among the paths with the
+/// fewest edges.
 struct Reach {
-  double ball_radius = 0;                            ///< above 0: all vertices this near; the rest is not read
-  int most_rings = std::numeric_limits<int>::max();  ///< edges to the vertex
-  double longest_path = std::numeric_limits<double>::infinity();  ///< the first ring with a longer one is the last
+  double ball_radius = 0;                            ///< above 0: all vertices within it; the other fields are ignored
+  int most_rings = std::numeric_limits<int>::max();  ///< most edges from the vertex
+  double longest_path = std::numeric_limits<double>::infinity();  ///< the first ring with a longer path is the last
 };
 
 /// Collects the neighbourhoods of a mesh, one at a time.
@@ -24,9 +24,9 @@ class Surroundings {
   /// `rings` are those of vertex_rings(mesh) and must outlive this; the mesh need not.
   Surroundings(const Mesh& mesh, const std::vector<Indices>& rings, const Reach& reach);
 
-  /// The places around a vertex relative to it, its own among them, to be written over as the caller likes; valid until the
-  /// next call. Their order depends on the places alone: sums over them are the same to the last bit however the vertices
-  /// are numbered.
+  /// The neighbours of a vertex relative to it, itself included; the caller may overwrite them; valid until the next call.
+  /// Their order depends on their coordinates alone, so that sums over them are the same to the last bit however the
+  /// vertices are numbered.
   std::vector<Eigen::Vector3d>& around(int vertex);
 
  private:

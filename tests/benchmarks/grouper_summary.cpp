@@ -40,7 +40,7 @@ namespace {
 /// Numbers of a row: two points, two frames, two distances.
 constexpr int kColumns = 26;
 
-/// The arithmetic that the definition asks for, and the loop that does it, on a table.
+/// The arithmetic that the definition requires, and the loop that does it, on a table.
 struct Kernel {
   std::string name;
   double operations;

@@ -99,7 +99,7 @@ struct Peer {
   peers::Icp icp;
 };
 
-/// Other libraries that are there, for one task.
+/// The other libraries that are installed, for one task.
 std::vector<Peer> peers_for(const Task& task) {
   std::vector<Peer> found;
 #ifdef CORRAL_WITH_PCL

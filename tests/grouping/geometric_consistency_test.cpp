@@ -105,7 +105,7 @@ TEST(GeometricConsistencyClique, ThreeAreTooFew) {
 }
 
 TEST(GeometricConsistencyClique, LargestWinsAndFirstFoundWinsATie) {
-  // Two cliques of four, {0,1,2,3} and {4,5,6,7}; a ninth row joins the second or nobody.
+  // Two cliques of four, {0,1,2,3} and {4,5,6,7}; a ninth row joins the second or none.
   const std::vector<double> source = {0, 10, 20, 30, 100, 110, 120, 130, 140};
   const std::vector<double> joined = {0, 10, 20, 30, 9100, 9110, 9120, 9130, 9140};
   std::vector<double> lonely = joined;

@@ -177,7 +177,7 @@ TEST(Ransac, OptionsOutOfRangeAreNamed) {
   EXPECT_THAT(refusal_of([&] { group_by_ransac(matches, options_of(5, 0)); }), HasSubstr("iterations"));
 }
 
-/// The first number of iterations after which a triple of right matches was as probable as asked.
+/// The first number of iterations after which a triple of correct matches had the required probability.
 int iterations_until_confident(const CorrespondenceSet& matches, double confidence, RansacOptions options) {
   for (int iterations = 1;; ++iterations) {
     options.iterations = iterations;

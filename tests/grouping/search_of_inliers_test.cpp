@@ -46,7 +46,7 @@ TEST(SearchOfInliers, CountsBothStages) {
 }
 
 TEST(SearchOfInliers, SimilarityLimitIsExcludedButIncludedInCovis) {
-  // r(0,1) = 9/10; row 2 agrees with nobody. Equal scores are all kept.
+  // r(0,1) = 9/10; row 2 agrees with no other. Equal scores are all kept.
   const CorrespondenceSet matches = table({0, 9, 100}, {0, 10, 300});
   const GroupingResult paper = group_by_search_of_inliers(matches);
   EXPECT_THAT(paper.scores, ElementsAre(0, 0, 0));
@@ -70,7 +70,7 @@ TEST(SearchOfInliers, LocalVotersPassTheRatioTest) {
   CorrespondenceSet matches = table({0, 10, 20}, {0, 10, 20});
   matches.feature_distance = column_of({2, 4, 4.5});
   matches.second_feature_distance = column_of({5, 5, 5});
-  matches.target_points(2, 0) = 90;  // agrees with nobody
+  matches.target_points(2, 0) = 90;  // agrees with no other
   // c = 0: local 1 of {1}, global 1 of {1,2}. c = 1: local 1 of {0}, global 1 of {0,2}. c = 2: 0 of {0,1}, 0 of {0,1}.
   EXPECT_THAT(group_by_search_of_inliers(matches).scores, ElementsAre(2.0 / 3, 2.0 / 3, 0));
   // covis, c = 0: no local voter, global 1 of 2. c = 1: as before.
@@ -78,7 +78,7 @@ TEST(SearchOfInliers, LocalVotersPassTheRatioTest) {
 }
 
 TEST(SearchOfInliers, LocalVotersAreTheNearestInTheSource) {
-  // kappa = 1; nobody but rows 0 and 1 is an inlier. Row 2 is the best match by ratio and agrees with nobody.
+  // kappa = 1; only rows 0 and 1 are correct. Row 2 is the best match by ratio and agrees with no other.
   CorrespondenceSet matches = table({0, 10, 25, 200}, {0, 10, 500, 9000});
   matches.feature_distance(2) = 0.1;
   // Nearest of 0: 1 (agrees). Of 1: 0 (agrees). Of 2: 1. Of 3: 2. Global voter 2 for all but itself.
@@ -90,7 +90,7 @@ TEST(SearchOfInliers, LocalVotersAreTheNearestInTheSource) {
 }
 
 TEST(SearchOfInliers, TieInDistanceGoesToTheLowerRow) {
-  // Rows 0 and 2 are both 10 from row 1; row 0 agrees with it, row 2 does not. Global voter: row 3, agrees with nobody.
+  // Rows 0 and 2 are both 10 from row 1; row 0 agrees with it, row 2 does not. Global voter: row 3, agrees with no other.
   CorrespondenceSet matches = table({0, 10, 20, 200}, {0, 10, 500, 9000});
   matches.feature_distance(3) = 0.1;
   EXPECT_EQ(group_by_search_of_inliers(matches, options_of(VotingForm::Paper, 1)).scores[1], 0.5);

@@ -51,7 +51,7 @@ TEST(Spectral, NoCompatiblePairGivesNothing) {
   EXPECT_THAT(group_by_spectral(table_on_line({4}, {7})).selected, IsEmpty());
   EXPECT_THAT(group_by_spectral(table_on_line({0, 10, 20}, {0, 100, 900})).selected, IsEmpty());
   EXPECT_THAT(group_by_spectral(table_on_line({0, 10, 20}, {0, 100, 900}), once()).selected, IsEmpty());
-  // Coinciding rows have r = 0: nobody is compatible.
+  // Coinciding rows have r = 0: no two are compatible.
   EXPECT_THAT(group_by_spectral(table_on_line({1, 1, 1}, {2, 2, 2})).selected, IsEmpty());
   EXPECT_THAT(group_by_spectral(table_on_line({1, 1, 1}, {2, 12, 22})).selected, IsEmpty());
 }

@@ -43,7 +43,7 @@ TEST(CsvFile, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(complaint_of("a,a\n"), HasSubstr("twice"));
   EXPECT_THAT(complaint_of("a,,b\n"), HasSubstr("without a name"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n1\n"), AllOf(HasSubstr("x.csv"), HasSubstr("line 3"), HasSubstr("1 cells")));
-  EXPECT_THAT(complaint_of("a\n\"open\n"), HasSubstr("does not end"));
+  EXPECT_THAT(complaint_of("a\n\"open\n"), HasSubstr("a quote without an end"));
   EXPECT_THAT(complaint_of("a\n\"shut\"more\n"), HasSubstr("closing quote"));
   EXPECT_THAT(complaint_of("a\nhalf\"quote\"\n"), HasSubstr("inside a cell"));
   EXPECT_THAT(complaint_of("a,b\n1,2"), HasSubstr("line 2")) << "a last line that the end of the file cuts off";

@@ -65,7 +65,7 @@ TEST(DatasetFile, TellsAHalfMadeSetFromNone) {
   const auto complaint = [&] { return testing::io_error_of([&] { read_dataset(folder.path()); }); };
   EXPECT_THAT(complaint(), HasSubstr("dataset.toml: does not exist"));
   put_text(folder / kRecipeName, "made so\n");
-  EXPECT_THAT(complaint(), HasSubstr(folder.path() + ": is half made"));
+  EXPECT_THAT(complaint(), HasSubstr(folder.path() + ": is unfinished"));
   put_text(folder / "dataset.toml", "name = \"x\"\n");
   put_text(folder / "pairs.csv", kPairs);
   EXPECT_EQ(complaint(), "");

@@ -79,7 +79,7 @@ TEST(ReadFile, ReadsAPipe) {
   writer.join();
 }
 
-// The first page of a process's memory is nobody's to read, though the file that shows it opens.
+// The first page of a process's memory cannot be read, although the file that shows it can be opened.
 TEST(ReadFile, NamesAFileThatCannotBeRead) {
   EXPECT_THAT(io_error_of([] { read_file("/proc/self/mem"); }), StartsWith("/proc/self/mem: cannot be read"));
 }

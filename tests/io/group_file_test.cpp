@@ -92,7 +92,7 @@ TEST(GroupFile, MustHaveARowPerMatch) {
               path + ": has 3 rows, expected " + std::to_string(matches) + ", one per match");
 }
 
-// Without a count in the file, a cut at the end of a line is seen only by whoever knows the number of matches.
+// Without a count in the file, a cut at the end of a line is detected only if the number of matches is known.
 TEST(GroupFile, TruncationAtEveryByteIsAnError) {
   const ScratchFolder folder;
   const std::string whole = group_text({12, {1, 3, 10}, std::vector<double>(12, -1.25)});

@@ -161,8 +161,8 @@ TEST(MatchesFile, NamesAMissingOrDoubledColumn) {
     EXPECT_THAT(refusal(replaced(kSmallest, column, "other")),
                 HasSubstr("line 3: no column '" + std::string(column) + "', expected one"));
   EXPECT_THAT(refusal(replaced(kSmallest, "target_z", "source_x")),
-              HasSubstr("line 3: column 'source_x' stands twice"));
-  EXPECT_THAT(refusal(kPreamble + kSix + ",feature_distance,feature_distance\n"), HasSubstr("stands twice"));
+              HasSubstr("line 3: column 'source_x' occurs twice"));
+  EXPECT_THAT(refusal(kPreamble + kSix + ",feature_distance,feature_distance\n"), HasSubstr("occurs twice"));
 }
 
 TEST(MatchesFile, FramesComeWhole) {

@@ -45,7 +45,7 @@ TEST(PcdHeader, NamesTheLineOfAWrongEntry) {
   EXPECT_EQ(with("VERSION 0.7", "VERSION 0.5"), ", line 2: found the version '0.5', expected 0.7 or 0.6");
   EXPECT_EQ(with("VERSION 0.7", "VERSION"), ", line 2: VERSION has 0 values, expected 1");
   EXPECT_EQ(with("x y z", "x y w"), ", line 3: field 'z' is missing, expected fields x, y and z");
-  EXPECT_EQ(with("x y z", "x y z x"), ", line 3: field 'x' stands twice");
+  EXPECT_EQ(with("x y z", "x y z x"), ", line 3: field 'x' occurs twice");
   EXPECT_EQ(with("x y z", ""), ", line 3: field 'x' is missing, expected fields x, y and z");
   EXPECT_EQ(with("SIZE 4 4 4", "SIZE 4 4"), ", line 4: SIZE has 2 values, expected 3");
   EXPECT_EQ(with("SIZE 4 4 4", "SIZE 4 4 3"), ", line 4: the size of field 'z' is '3', expected 1, 2, 4 or 8 bytes");

@@ -167,8 +167,8 @@ TEST_P(Ply, WhatIsNoCoordinateMayBeNan) {
 }
 
 TEST_P(Ply, NothingStandsTwice) {
-  EXPECT_THAT(refusal(ply_file(format(), kVertex + "property float x\n", {})), HasSubstr("property 'x' stands twice"));
-  EXPECT_THAT(refusal(ply_file(format(), kVertex + kVertex, {})), HasSubstr("element 'vertex' stands twice"));
+  EXPECT_THAT(refusal(ply_file(format(), kVertex + "property float x\n", {})), HasSubstr("property 'x' occurs twice"));
+  EXPECT_THAT(refusal(ply_file(format(), kVertex + kVertex, {})), HasSubstr("element 'vertex' occurs twice"));
 }
 
 TEST_P(Ply, CoordinatesAreFinite) {
@@ -210,7 +210,7 @@ TEST(PlyHeader, NamesTheLineOfWhatItDoesNotKnow) {
   EXPECT_THAT(refusal("ply\nformat utf8 1.0\n"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("ply\nelement vertex 0\n"), HasSubstr("line 2"));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nend_header\n"), HasSubstr("header: no element vertex, expected one"));
-  EXPECT_THAT(header(kVertex + "element vertex 3\n"), HasSubstr("line 7: element 'vertex' stands twice"));
+  EXPECT_THAT(header(kVertex + "element vertex 3\n"), HasSubstr("line 7: element 'vertex' occurs twice"));
   EXPECT_THAT(header("property float x\n"), HasSubstr("line 3: found 'property float x', expected an element"));
   EXPECT_THAT(header(kVertex + "property long x\n"), HasSubstr("line 7: found the type 'long', expected char, uchar"));
   EXPECT_THAT(header(kVertex + "property list float int a\n"), HasSubstr("line 7: the length of a list is 'float'"));

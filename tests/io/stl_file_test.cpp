@@ -41,7 +41,7 @@ std::string binary_stl(const std::vector<Facet>& facets, double promised, std::s
   title.resize(80, ' ');
   std::string content = title + encode({'I', promised}, false);
   for (const Facet& facet : facets) {
-    for (int axis = 0; axis < 3; ++axis) content += encode({'f', std::nan("")}, false);  // nobody reads the normal
+    for (int axis = 0; axis < 3; ++axis) content += encode({'f', std::nan("")}, false);  // the normal is not read
     for (const double coordinate : facet) content += encode({'f', coordinate}, false);
     content += "\x01\xff";
   }

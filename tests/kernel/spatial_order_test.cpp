@@ -29,7 +29,7 @@ bool is_permutation_of_rows(Indices order, Eigen::Index count) {
   return order == rows;
 }
 
-/// Mean diagonal of the boxes of every so many points in a row.
+/// Mean diagonal of the boxes of groups of consecutive points.
 double mean_diagonal(const Points& points, const Indices& order, std::size_t share) {
   double sum = 0;
   int boxes = 0;

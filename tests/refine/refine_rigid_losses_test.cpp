@@ -137,7 +137,7 @@ TEST(RefineRigidLosses, CovarianceHoldsForEveryLoss) {
 TEST(RefineRigidLosses, HalfGrossErrors) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const SyntheticProblem given = problem(400, 0.5, 0.5, seed);
-    // The noise: the covariance that least squares over the right matches alone has. 6 degrees of freedom, 1e-6 beyond 38.
+    // The noise: the covariance of least squares over the correct matches alone. 6 degrees of freedom, 1e-6 beyond 38.
     RefineOptions plain;
     plain.loss = RobustLoss::None;
     const RefinedPose oracle = refine_rigid(given.matches, given.inliers, plain);
@@ -196,7 +196,7 @@ TEST(RefineRigidLosses, ConditionIsThatOfTheCentredRows) {
 }
 
 TEST(RefineRigidLosses, RowsThatKeepTheirWeightMustFixThePose) {
-  // Ten right matches on a line, two wrong ones beside it: without them nothing says how to turn about the line.
+  // Ten correct matches on a line, two incorrect ones beside it: without them the rotation about the line is undetermined.
   CorrespondenceSet matches = testing::table_on_line({0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 45, 45},
                                                      {0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 45, 45});
   matches.source_points(10, 1) = 30, matches.source_points(11, 1) = -30;

@@ -101,7 +101,7 @@ TEST(RefineRigid, TruthIsRecoveredAmongGrossErrors) {
     const SyntheticProblem given = problem(200, 0.7, 0.5, seed);
     const RefinedPose found = refine(given.matches);
     ASSERT_EQ(found.status, RefineStatus::Refined);
-    // 140 right matches over a cube of 200 pr: deviations of about 5e-4 rad, and 0.04 pr at the middle.
+    // 140 correct matches over a cube of 200 pr: deviations of about 5e-4 rad, and 0.04 pr at the middle.
     EXPECT_LT(small_angle(*found.target_from_source, given.truth), 0.003) << seed;
     const Eigen::Vector3d middle = given.matches.source_points.colwise().mean().transpose();
     EXPECT_LT((*found.target_from_source * middle - given.truth * middle).norm(), 0.3) << seed;

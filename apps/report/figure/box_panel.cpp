@@ -65,7 +65,7 @@ std::string box_script(const BoxPanel& panel) {
   for (const Box& box : panel.boxes) methods.push_back(box.method);
   const auto styles = method_styles(methods);
   std::string tics, plot = "plot \\\n";
-  // A quantile beyond every number ends at the upper border, one of zero at the lower.
+  // An infinite quantile is drawn at the upper border, a quantile of zero at the lower.
   const auto column = [](int number) {
     const std::string text = std::to_string(number);
     return ":(valid(" + text + ")?(column(" + text + ")<bottom?bottom:column(" + text + ")):top)";

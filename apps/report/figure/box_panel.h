@@ -8,17 +8,17 @@
 
 namespace corral {
 
-/// A method's distribution of an error; absent where so many pairs have none that the quantile is beyond every number.
+/// A grouper's distribution of an error; a quantile is absent where so many pairs have no value that it is infinite.
 struct Box {
   std::string method;
   std::array<std::optional<double>, 5> quantiles;  ///< 5, 25, 50, 75 and 95 of 100
   int pairs = 0, without = 0;                      ///< without a value
 };
 
-/// The box of some values, those that are absent counted as worse than any. Quantiles between two values are linear.
+/// The box of some values, absent ones counted as worse than any. Quantiles are interpolated linearly.
 Box box_of(const std::string& method, const std::vector<std::optional<double>>& values);
 
-/// Boxes beside each other on a logarithmic axis.
+/// Boxes side by side on a logarithmic axis.
 struct BoxPanel {
   std::string name;  ///< of its files, as of a Panel
   std::string title, y_axis;
@@ -27,7 +27,7 @@ struct BoxPanel {
 
 /// x,method,q05,q25,q50,q75,q95,pairs,without
 std::string box_csv(const BoxPanel& panel);
-/// A script for gnuplot as panel_script's; what is absent ends at the upper border.
+/// A script for gnuplot as that of panel_script; an absent quantile is drawn at the upper border.
 std::string box_script(const BoxPanel& panel);
 
 }  // namespace corral

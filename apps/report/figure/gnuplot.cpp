@@ -15,12 +15,12 @@ extern char** environ;
 namespace corral {
 namespace {
 
-/// Where a program is told what to do: its folder.
+/// The folder that the program runs in.
 struct Actions {
   explicit Actions(const std::string& folder) {
     ::posix_spawn_file_actions_init(&value);
     ::posix_spawn_file_actions_addchdir_np(&value, folder.c_str());
-    // It warns of every curve that has no value at all.
+    // It warns of every curve without any value.
     ::posix_spawn_file_actions_addopen(&value, 2, "/dev/null", O_WRONLY, 0);
   }
   Actions(const Actions&) = delete;
@@ -29,7 +29,7 @@ struct Actions {
   posix_spawn_file_actions_t value;
 };
 
-/// The date stands in plain text; another of the same length moves nothing.
+/// The date is plain text; another date of the same length changes no offset.
 void date_1970(const std::string& path) {
   const std::string key = "/CreationDate (D:", date = "19700101000000";
   std::string pdf = read_file(path);

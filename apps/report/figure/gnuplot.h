@@ -6,7 +6,7 @@
 
 namespace corral {
 
-/// gnuplot is not installed, or could not draw what it was told.
+/// gnuplot is not installed, or failed.
 struct GnuplotError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -13,7 +13,7 @@ const std::map<std::string, MethodStyle> kKnown = {
     {"si", {"SI", "#d55e00", 6, "(4,3)"}},       {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
     {"floor", {"floor", "#888888", 0, "(10,5)"}}};
 
-// For those that are not of the paper: colours and markers that none of the seven has.
+// For groupers that are not in the paper: colours and markers that none of the seven has.
 const std::vector<std::string> kFurtherColors = {"#882255", "#999933", "#332288", "#aa4499",
                                                  "#117733", "#661100", "#6699cc", "#aa4466"};
 const std::vector<int> kFurtherPoints = {4, 8, 10, 12, 14, 1, 2, 3};

@@ -7,7 +7,7 @@
 
 namespace corral {
 
-/// How a method looks in every figure.
+/// The look of a grouper in every figure.
 struct MethodStyle {
   std::string label;      ///< for people, such as "3DHV"
   std::string color;      ///< "#rrggbb"
@@ -15,12 +15,12 @@ struct MethodStyle {
   std::string dash = "";  ///< gnuplot's pattern; empty: solid
 };
 
-/// A style for each of these methods. The paper's seven always have the same, in the colours of Okabe and Ito that
-/// colour-blind readers tell apart; "oracle" and "floor" are grey. Others take theirs in the order of their names, and
-/// go by these names; from the ninth on they share.
+/// A style for each of these groupers. The paper's seven always have the same one, in the colours of Okabe and Ito, which
+/// colour-blind readers can tell apart; "oracle" and "floor" are grey. Others get theirs in the order of their names, which
+/// are also their labels; from the ninth on styles repeat.
 std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>& methods);
 
-/// True for "oracle" and "floor", which bound what a grouper can do and are none themselves.
+/// True for "oracle" and "floor", which bound what a grouper can do but are not groupers.
 bool is_bound(const std::string& method);
 
 }  // namespace corral

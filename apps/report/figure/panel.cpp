@@ -12,7 +12,7 @@ namespace {
 
 std::string cell(const std::optional<double>& value) { return value ? to_text(*value) : ""; }
 
-/// Where a level stands on the axis.
+/// The position of a level on the axis.
 double place_of(const Panel& panel, std::size_t level) {
   if (panel.axes == PanelAxes::Levels) return static_cast<double>(level + 1);
   return parse_double(panel.levels[level]).value_or(static_cast<double>(level + 1));
@@ -52,7 +52,7 @@ std::string axes_text(const Panel& panel) {
 std::string gnuplot_text(const std::string& text) {
   std::string quoted = "'";
   for (const char character : text) {
-    if (character == '\'') quoted += '\'';  // a quote stands for itself as two
+    if (character == '\'') quoted += '\'';  // a quote is doubled
     quoted += static_cast<unsigned char>(character) < ' ' ? ' ' : character;
   }
   return quoted + "'";
@@ -102,7 +102,7 @@ std::string panel_script(const Panel& panel) {
   std::string bars, lines;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const MethodStyle& style = styles.at(panel.series[i].method);
-    // Where there are bars, they stand beside each other; an absent value breaks the line.
+    // Bars are drawn side by side; an absent value breaks the line.
     const double beside = (static_cast<double>(i) - static_cast<double>(panel.series.size() - 1) / 2) * 0.05;
     const std::string x = intervals && panel.axes == PanelAxes::Levels ? "($2+(" + fixed(beside, 3) + "))" : "2";
     const auto column = [&](std::size_t offset) { return "column(" + std::to_string(3 + 3 * i + offset) + ")"; };

@@ -9,7 +9,7 @@
 
 namespace corral {
 
-/// A value with the interval that it is known to; what could not be had is absent and drawn as a gap.
+/// A value with its interval; a missing one is absent and drawn as a gap.
 struct PanelValue {
   std::optional<double> value, low, high;
 };
@@ -19,19 +19,19 @@ struct PanelSeries {
   std::vector<PanelValue> values;  ///< one for each level
 };
 
-/// A row or column of a table beside the values, such as how many pairs a level has.
+/// A row or column of a table beside the values, such as the number of pairs of a level.
 struct PanelCount {
   std::string name;
   std::vector<std::string> cells;  ///< one for each level, or for each series
 };
 
 enum class PanelAxes {
-  Levels,      ///< the levels stand at even distances under their labels; values from 0 to 1
+  Levels,      ///< the levels are evenly spaced and labelled; values from 0 to 1
   Curve,       ///< the labels are numbers; values from 0 to 1
   Logarithmic  ///< the labels are numbers; both axes are logarithmic
 };
 
-/// A figure of curves, one for each method, and the table behind it.
+/// A figure of curves, one for each grouper, and the table behind it.
 struct Panel {
   std::string name;  ///< of its files, without ending: letters, digits and . _ + - only
   std::string title, x_axis, y_axis;
@@ -40,27 +40,27 @@ struct Panel {
   std::vector<std::string> levels;
   std::vector<PanelSeries> series;  ///< in the order of the legend
   std::vector<PanelCount> level_counts, series_counts;
-  std::string note;  ///< what a reader of the table must know
+  std::string note;  ///< a note for readers of the table
 };
 
 /// level,x, then <method>,<method>_low,<method>_high of each series; empty where a value is absent. A level without any
-/// value has no row: lines go on beyond it.
+/// value has no row, so that lines continue across it.
 std::string panel_csv(const Panel& panel);
 
 /// A script for gnuplot that reads `<name>.csv` beside it and makes `<name>.pdf` and `<name>.svg`, 8 cm wide.
 std::string panel_script(const Panel& panel);
 
-/// The panel as a LaTeX table that needs no package: a row for each method, the best of every level in bold.
+/// The panel as a LaTeX table that needs no package: a row for each grouper, the best of every level in bold.
 std::string panel_latex(const Panel& panel);
 
-/// Text that LaTeX prints as it stands; line breaks become spaces.
+/// Text that LaTeX prints verbatim; line breaks become spaces.
 std::string latex_text(const std::string& text);
 
-/// What every script begins with, and how it ends: both files from what `plot` draws. `height_cm` of 8 cm width.
+/// The beginning and the end of every script: both files from what `plot` draws, `height_cm` high and 8 cm wide.
 std::string script_head(double height_cm);
 std::string script_tail(const std::string& name, const std::string& plot, double height_cm);
 
-/// Text as a string of gnuplot's that stands for itself.
+/// Text as a gnuplot string without special characters.
 std::string gnuplot_text(const std::string& text);
 
 }  // namespace corral

@@ -14,7 +14,7 @@ std::string number_text(const Panel& panel, double value) {
   return fixed(value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
 }
 
-/// The best value of a level as it is printed; empty if there is none.
+/// The best value of a level as printed; empty if there is none.
 std::string best_of(const Panel& panel, std::size_t level) {
   std::optional<double> best;
   for (const PanelSeries& series : panel.series) {
@@ -58,7 +58,7 @@ std::string panel_latex(const Panel& panel) {
   for (const PanelSeries& series : panel.series) methods.push_back(series.method);
   const auto styles = method_styles(methods);
   const std::size_t columns = 1 + panel.levels.size() + panel.series_counts.size();
-  // A row must not begin with a bracket, which would be taken for an option of the row before.
+  // A row must not begin with a bracket, which would be read as an option of the previous row.
   std::string text = "\\begin{tabular}{l" + std::string(columns - 1, 'r') + "}\n\\hline\n" + latex_text(panel.y_axis);
   for (const std::string& level : panel.levels) text += " & " + latex_text(level);
   for (const PanelCount& count : panel.series_counts) text += " & " + latex_text(count.name);
@@ -79,7 +79,7 @@ std::string panel_latex(const Panel& panel) {
   for (const PanelCount& count : panel.level_counts) {
     text += "{" + latex_text(count.name) + "}";
     for (const std::string& number : count.cells) text += " & " + latex_text(number);
-    text += " \\\\\n";  // fewer cells than columns are fine
+    text += " \\\\\n";  // fewer cells than columns are allowed
   }
   text += "\\hline\n";
   if (!panel.note.empty())

@@ -78,7 +78,7 @@ std::string rank_script(const RankDiagram& diagram) {
                "linewidth 1.5 linecolor rgb '#000000'");
   drawing.words(1, 2.0, "critical difference " + fixed(diagram.critical_difference, 2), "left");
   double row = 0;
-  for (const auto& clique : diagram.cliques) {  // bars that touch no method's line
+  for (const auto& clique : diagram.cliques) {  // bars that touch no grouper's line
     const auto [low, high] =
         std::minmax_element(clique.begin(), clique.end(), [&](int a, int b) { return rank(a) < rank(b); });
     row -= 0.45;

@@ -12,15 +12,15 @@ struct RankDiagram {
   std::string title;
   std::vector<std::string> methods;       ///< 2 or more
   std::vector<double> average_ranks;      ///< one each; 1 is best
-  double critical_difference = 0;         ///< average ranks that lie further apart differ
-  std::vector<std::vector<int>> cliques;  ///< methods that are not told apart, as places in `methods`
+  double critical_difference = 0;         ///< average ranks further apart than this differ
+  std::vector<std::vector<int>> cliques;  ///< groupers that do not differ significantly, as positions in `methods`
 };
 
 /// method,average_rank in the order of ranks, below a comment line with the critical difference.
 std::string rank_csv(const RankDiagram& diagram);
 
-/// A script for gnuplot that holds all it draws: the best on the left, a bar over every clique. Throws InvalidInput for
-/// fewer than 2 methods, or ranks or cliques that do not fit them.
+/// A self-contained script for gnuplot: the best on the left, a bar over every clique. Throws InvalidInput for fewer than 2
+/// methods, or ranks or cliques that do not fit them.
 std::string rank_script(const RankDiagram& diagram);
 
 }  // namespace corral

@@ -6,7 +6,7 @@
 
 namespace corral {
 
-// What is nearest: the one place where distances of features are defined. Only sources include this.
+// The one place where the distance of two features is defined. Only sources include this, compiled without contraction.
 //
 // A squared distance adds up the rows in sixteen sums by row mod 16; of these the first eight and the last eight are added,
 // then lane by lane, as everywhere (lanes-inl.h).

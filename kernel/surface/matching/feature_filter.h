@@ -17,10 +17,10 @@ namespace corral {
 struct FilterScratch {
   FilterScratch(Eigen::Index dimension, int panels);
 
-  /// A source feature on its way.
+  /// The state of a source feature between the steps of its search.
   struct Query {
     int row = 0;
-    Indices seeds, chosen;  ///< targets that are measured first; others that may be as near
+    Indices seeds, chosen;  ///< targets that are measured first; other candidates
     FloatColumn fine;       ///< scores of `chosen`
     int seed_count = 0, count = 0;
     TwoNearest nearest;
@@ -34,7 +34,7 @@ struct FilterScratch {
 
 /// Lower bounds |x' - y'| on all distances |x - y|, from a product of short rows of floats. Let D be the larger distance
 /// of two targets that were measured: a target with |x' - y'| > D + errors of both rows is farther than these two, and is
-/// not looked at again. What is left is judged by longer rows in the same way, and measured.
+/// discarded. The rest is compared by longer rows in the same way, and then measured.
 class FeatureFilter {
  public:
   /// At least 64 targets; equal dimensions, at least one.
@@ -50,7 +50,7 @@ class FeatureFilter {
   template <class Use>
   void search(Eigen::Index first, int count, FilterScratch& scratch, const Use& use) const {
     score(first, count, scratch);
-    // The memory of what is measured next is on its way while another feature is worked on.
+    // While one feature is processed, the data of the next one are prefetched.
     for (int i = 0; i < count + 2; ++i) {
       if (i < count) choose_seeds(i, scratch, scratch.queries[i % 3]);
       if (i >= 1 && i <= count) choose_candidates(first, scratch, scratch.queries[(i - 1) % 3]);

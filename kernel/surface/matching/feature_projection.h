@@ -44,7 +44,7 @@ class FeatureProjection {
   double scale() const { return scale_; }
 
   /// Projects `count` columns from `first` on; the last number of each row becomes 1. A feature that lies 1e15 times as
-  /// far out as the sample has an infinite error.
+  /// far from the centre as the sample has an infinite error.
   void project(const Eigen::MatrixXd& features, Eigen::Index first, int count, ProjectedFeatures& out) const;
 
  private:

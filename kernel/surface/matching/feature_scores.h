@@ -5,8 +5,8 @@
 
 namespace corral {
 
-// Products of short rows of floats: the arithmetic of a filter, rounded differently on every target. Whoever uses
-// them allows for (s + 4) 2^-24 of the sum of magnitudes, s steps. Only sources include this.
+// Products of short rows of floats: the arithmetic of a filter, rounded differently on every target. Callers allow for
+// an error of (s + 4) 2^-24 of the sum of magnitudes after s steps. Only sources include this.
 
 constexpr int kPanelColumns = 64;  ///< columns that are multiplied together, stored step by step
 constexpr int kRowTile = 6;        ///< numbers of rows are multiples of this

@@ -9,7 +9,7 @@
 
 namespace corral {
 
-/// Throws InvalidInput unless all numbers of some features are finite. `side`: source or target.
+/// Throws InvalidInput unless all features are finite. `side`: source or target.
 void require_finite_features(const Eigen::Ref<const Eigen::MatrixXd>& features, const std::string& side);
 
 /// The two nearest target features of every source feature.
@@ -27,7 +27,7 @@ struct NearestFeatures {
 /// Nothing is returned if either side is empty. Every machine and number of threads gives the same bits.
 ///
 /// Method    Lower bounds first, then the few distances that they leave open: features are projected on the principal
-///           directions of a sample, and keep the length of what is left (partial distances with the norm of the rest).
+///           directions of a sample, and the length of the rest is kept (partial distances with the norm of the rest).
 ///           All pairs are bounded by a matrix product of 24 floats per feature, about 1 % of them again by 64 floats,
 ///           and about ten per source feature are measured in double. Bounds allow for every rounding, so that no
 ///           distance is missed; where floats cannot hold the features, all are measured.

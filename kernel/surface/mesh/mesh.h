@@ -11,17 +11,16 @@ namespace corral {
 /// Three vertices per row, counter-clockwise seen from outside.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3>;
 
-/// A triangle mesh, or a point cloud if it has no triangles. Plain arrays: whoever needs half-edges or a tree builds them.
+/// A triangle mesh, or a point cloud if it has no triangles. Plain arrays: code that needs half-edges or a tree builds them.
 struct Mesh {
   Points vertices;      ///< V x 3, mesh units
   Triangles triangles;  ///< F x 3, zero-based rows of `vertices`; F = 0 for a cloud
 
-  /// Throws InvalidInput if a coordinate is not finite or a triangle names a vertex that is not there.
+  /// Throws InvalidInput if a coordinate is not finite or a triangle names a vertex that does not exist.
   void validate(const std::string& who) const;
 };
 
-/// Rows in ascending order of x, then y, then z, then row: an order that the numbering of the points decides only among
-/// those in one place.
+/// Rows in ascending order of x, then y, then z, then row: the numbering of the points matters only among coincident ones.
 Indices rows_by_place(const Points& points);
 
 /// Mean of all vertices; zero for none.

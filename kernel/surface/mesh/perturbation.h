@@ -15,13 +15,14 @@ namespace corral {
 /// Throws    InvalidInput if the deviation is not finite and >= 0.
 Mesh add_gaussian_noise(const Mesh& mesh, double deviation, std::uint64_t seed);
 
-/// The deviation that made one mesh of the other: root mean square of the differences of all coordinates, vertex by vertex.
+/// The standard deviation of the noise between two meshes: root mean square of the differences of all coordinates, vertex by
+/// vertex.
 /// Throws    InvalidInput unless both have the same number of vertices, at least one.
 double noise_deviation(const Mesh& clean, const Mesh& noisy);
 
-/// A random share of the vertices, round(share V) of them, every choice as likely as any other, in their order. Each
-/// triangle follows its corners to the kept vertices nearest to them along edges (equally near: the lower vertex), and goes
-/// if two of them meet: what is left of the winding tells the outside of the surface, as it did on the whole mesh.
+/// A random share of the vertices, round(share V) of them, chosen uniformly, in their order. Each corner of a triangle moves
+/// to the kept vertex nearest to it along edges (equally near: the lower vertex); a triangle with two corners at the same
+/// vertex is dropped. The remaining triangles keep their winding, and with it the outside of the surface.
 ///
 /// Throws    InvalidInput unless 0 <= share <= 1.
 Mesh thin_mesh(const Mesh& mesh, double share, std::uint64_t seed);

@@ -5,16 +5,16 @@
 
 namespace corral {
 
-/// A coarse mesh to look at, with normals that remember the fine one.
+/// A coarse mesh for display, with the normals of the fine one.
 struct SimplifiedMesh {
   Mesh mesh;
   Points normals;  ///< V x 3, unit length; empty for a cloud
 };
 
-/// Vertices in one cell of a cubic grid become their mean, its cells the smallest of a row of sizes that leave at most
-/// `most_vertices`; the vertices of a smaller mesh stay. Triangles that lose a corner, or come to lie on another, go;
-/// those that look against the normals of their corners are turned. Normals are the sums of those of the fine vertices,
-/// weighted by area; where they cancel (thin sheets) those of the coarse mesh.
+/// The vertices in each cell of a cubic grid are replaced by their mean; the cell size is the smallest of a series that
+/// leaves at most `most_vertices`. A mesh with no more vertices keeps them. Triangles that lose a corner or coincide with
+/// another are dropped; those that face against the normals of their corners are reversed. Normals are the area-weighted
+/// sums of those of the fine vertices; where these cancel (thin sheets), those of the coarse mesh.
 ///
 /// Cost      O(V + F) time and memory for each size tried, about ten. Deterministic.
 /// Throws    InvalidInput: most_vertices below 1, an invalid mesh.

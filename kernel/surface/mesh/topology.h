@@ -7,13 +7,13 @@
 
 namespace corral {
 
-/// How a mesh hangs together.
+/// The connectivity of a mesh.
 struct Topology {
   int duplicate_vertices = 0;   ///< vertices at exactly the place of an earlier one
   int isolated_vertices = 0;    ///< vertices without a triangle (in a mesh that has triangles)
   int degenerate_faces = 0;     ///< triangles with a repeated corner or without area
   int misoriented_faces = 0;    ///< triangles wound against the majority of their part
-  int non_manifold_faces = 0;   ///< triangles that no half-edge structure can take (third on an edge, or folded fan)
+  int non_manifold_faces = 0;   ///< triangles that no half-edge structure can hold (third on an edge, or folded fan)
   int components = 0;           ///< parts of the triangles that share no vertex
   int boundary_edges = 0;       ///< edges with one triangle
   int boundary_loops = 0;       ///< closed walks along boundary edges
@@ -21,7 +21,7 @@ struct Topology {
 };
 
 /// Degenerate and non-manifold triangles are counted and left out of the components, boundaries and edges; misoriented ones
-/// are counted and turned.
+/// are counted and reversed.
 Topology inspect_topology(const Mesh& mesh);
 
 /// For each vertex the vertices that an edge joins to it, ascending; none for a vertex without a triangle. Degenerate and

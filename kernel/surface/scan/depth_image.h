@@ -8,14 +8,14 @@
 
 namespace corral {
 
-/// What one sensor saw, as an image of the nearest depths: where it saw a surface, nothing was in front of it.
+/// What one sensor saw, as an image of the nearest depths: in front of a surface that it saw there was nothing.
 ///
 /// The image is that of triangulate_view, in square cells; it has at most 1024 x 1024 of them (a larger view gets larger
 /// cells).
 class DepthImage {
  public:
-  /// `cell`: side of a cell at the mean distance of the points, mesh units; of about 2 pr, so that a surface leaves none
-  /// empty. Of `options` only the sensor or direction is read. Throws InvalidInput as triangulate_view does, or if there
+  /// `cell`: side of a cell at the mean distance of the points, mesh units; about 2 pr, so that a surface leaves no cell
+  /// empty. Of `options` only the sensor or direction is used. Throws InvalidInput as triangulate_view does, or if there
   /// are no points.
   DepthImage(const Points& view, double cell, const ViewOptions& options = {});
 

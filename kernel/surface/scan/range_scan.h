@@ -13,7 +13,7 @@ namespace corral {
 
 /// A surface where it stands in the world.
 struct PosedSurface {
-  const SurfaceTree* surface;  ///< outlives what works with this
+  const SurfaceTree* surface;  ///< must outlive this
   RigidTransform world_from_mesh;
 };
 using PosedSurfaces = std::vector<PosedSurface>;
@@ -21,7 +21,7 @@ using PosedSurfaces = std::vector<PosedSurface>;
 /// Where a range sensor stands. Its own frame has it at the origin, looking along -z with y up, as real scans have it.
 struct RangeSensor {
   Eigen::Vector3d position;  ///< in the world
-  Eigen::Vector3d target;    ///< what it looks at
+  Eigen::Vector3d target;    ///< the point it looks at
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
   /// Throws InvalidInput if it is not finite or looks at itself. If it looks along `up`, any other direction is up.
@@ -33,17 +33,17 @@ struct RangeSensor {
 /// turn, each rolled about its own axis by another angle. Throws InvalidInput unless 0 <= i < n.
 RangeSensor ring_sensor(const Mesh& mesh, int i, int n, double distance = 3);
 
-/// pr of the scan of a curved surface in spacings of its rays, about: 1.03 to 1.14 for animals and busts.
+/// Approximate pr of the scan of a curved surface, in spacings of its rays: 1.03 to 1.14 for animals and busts.
 constexpr double kScanResolution = 1.08;
 
 struct RangeScanOptions {
   double spacing = 0;       ///< between neighbouring rays at the distance of the target, mesh units; required
   double noise = 0;         ///< deviation of normal noise along each ray, mesh units
-  double grazing_deg = 80;  ///< a surface that a ray meets flatter than this, from its normal, sends nothing back
+  double grazing_deg = 80;  ///< largest angle between ray and surface normal; beyond it nothing is returned
   std::uint64_t seed = 1;   ///< of the noise
 };
 
-/// One point for each ray that came back, row by row of the image from the top, each from the left.
+/// One point for each ray that returned, row by row of the image from the top, each row from the left.
 struct RangeScan {
   Points points;                    ///< in the frame of the sensor, mesh units
   Indices surfaces;                 ///< which of the posed surfaces each lies on
@@ -54,13 +54,13 @@ struct RangeScan {
   RigidTransform sensor_from_world;
 };
 
-/// A virtual range scanner: a ray through every cell of an image, and what it meets first.
+/// A virtual range scanner: a ray through every cell of an image, and the surface that it meets first.
 ///
 ///   ray (i, j) = (j h, -i h, -1) / norm,  h = spacing / |target - position|     point = (distance + noise * N(0,1)) ray
 ///   patch area = sum over its rays of distance^2 h^2 / ((1 + (j h)^2 + (i h)^2)^(3/2) cosine)
 ///
 /// The area of a patch is that of the surface itself behind each cell of the image, so that it has neither holes nor a rim
-/// that is half a cell too small; what is met flatter than `grazing_deg` counts as not seen. Without noise each point lies
+/// that is half a cell too small; a surface met at more than `grazing_deg` counts as not seen. Without noise each point lies
 /// on its triangle under sensor_from_world * world_from_mesh up to rounding: the poses are the truth.
 ///
 /// Cost      one query of each tree whose box the ray may meet; O(rays) memory. Any number of threads gives the same bits.

@@ -8,15 +8,15 @@
 
 namespace corral {
 
-/// From where a view was taken, and which of its triangles are surface.
+/// Where a view was taken from, and which of its triangles belong to a surface.
 struct ViewOptions {
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();  ///< its position, mesh units: rays meet there (perspective)
-  std::optional<Eigen::Vector3d> direction;          ///< the way it looks from far away (orthographic): no `sensor`
+  std::optional<Eigen::Vector3d> direction;          ///< viewing direction from far away (orthographic), not `sensor`
   double longest_edge_pr = 6;                        ///< a triangle with a longer edge spans a jump in depth
-  double grazing_deg = 80;                           ///< a triangle seen flatter than this, from its normal, is none
+  double grazing_deg = 80;                           ///< a triangle seen at a larger angle from its normal is dropped
 };
 
-/// The triangles of a view, and what became of the rest.
+/// The triangles of a view, and why others were dropped.
 struct ViewTriangulation {
   Triangles triangles;   ///< the smallest vertex of a row first, rows ascending; counter-clockwise seen from the sensor
   int dropped_long = 0;  ///< triangles with an edge longer than `longest_edge_pr`
@@ -24,14 +24,14 @@ struct ViewTriangulation {
   int hidden = 0;           ///< vertices without a triangle because a nearer one (or its double) is seen in their place
 };
 
-/// Gives faces to the points of one range scan: a Delaunay triangulation of what the sensor sees, without the triangles
-/// that no surface explains.
+/// Gives faces to the points of one range scan: a Delaunay triangulation of what the sensor sees, without triangles that do
+/// not lie on a surface.
 ///
 ///   u = |c - s| (x - s).e1 / (x - s).d     v = |c - s| (x - s).e2 / (x - s).d     d = (c - s) / |c - s|, e1, e2 across d
 ///
 /// with the sensor s and the mean c of the distinct points; with a direction d, u = (x - c).e1 and v = (x - c).e2. Images
 /// within about a millionth of a pr are one place: the nearer point keeps it, the lower row if they are equally near.
-/// Corners that are seen in a line are no triangle, and not counted.
+/// Corners that appear on a line form no triangle, and are not counted.
 ///
 /// A surface sampled at one pr has edges of 1 / cos(80 deg) = 5.8 pr where it is seen at 80 deg: hence the two defaults,
 /// which end at the same slope. In two scenes of [mian2006recognition] they keep 98 % of the triangles that lie on the

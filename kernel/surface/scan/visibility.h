@@ -32,7 +32,7 @@ double overlap_share(const Points& source, const Points& target, const RigidTran
 /// Area of all triangles in squared mesh units.
 double surface_area(const Mesh& mesh);
 
-/// How little of a model a scene shows, and how much else; shares of 1.
+/// How much of a model a scene hides, and how much of the scene is something else; shares of 1.
 struct Visibility {
   double occlusion, clutter;
 };

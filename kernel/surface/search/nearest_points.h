@@ -11,14 +11,14 @@
 
 namespace corral {
 
-/// A tree of boxes over a fixed set of points, eight to a node, so that a register looks at all of a node at once. For
-/// queries that lie anywhere; where the queries are the points themselves, PointGrid is the index of choice.
+/// A tree of boxes over a fixed set of points, eight to a node, so that one vector operation tests all of a node. For
+/// queries anywhere; where the queries are the points themselves, PointGrid is faster.
 class PointTree {
  public:
   /// Rows that are not finite are never found.
   explicit PointTree(const Points& points, const ParallelFor& parallel = one_by_one);
 
-  struct alignas(64) Node {  // of an entry that is not there, all places are infinite
+  struct alignas(64) Node {  // an absent entry has infinite coordinates
     double low[3][kLanes], high[3][kLanes];
     int child[kLanes];  // a node, or the number of a leaf
   };
@@ -52,9 +52,9 @@ struct FollowedPoints;
 ///
 ///   nearest(i) = argmin_v |q_i - v| over the points with |q_i - v| <= limit, the lowest row of several
 ///
-/// The answer is exact and does not depend on the calls before; they only save time. If all points but v were at least c
-/// away from a query that has moved by d since, they are at least c - d away: while |q - v| < c - d, v remains the nearest,
-/// and nothing is searched. Otherwise queries that lie next to each other are searched together, one in each lane.
+/// The result is exact and does not depend on earlier calls; they only save time. If all points but v were at least c away
+/// from a query that has moved by d since, they are at least c - d away: while |q - v| < c - d, v remains the nearest, and
+/// no search is needed. Otherwise neighbouring queries are searched together, one in each lane.
 ///
 /// Source    the bound is that of [greenspan2001nearest], with one distance in place of sorted lists of neighbours.
 /// Cost      one comparison where the bound holds; a search visits O(log V) nodes, and few for a query beyond the limit.
@@ -66,7 +66,7 @@ class NearestTracker {
   ~NearestTracker();
 
   /// Each query (N x 3) with the nearest point, if one lies within the limit (inclusive, units of the points) and the query
-  /// is finite. Valid until the next call. Fast if queries that follow each other lie next to each other (spatial_order).
+  /// is finite. Valid until the next call. Fast if consecutive queries lie close together (spatial_order).
   const PointPairs& pair(const Points& queries, double limit);
 
   /// The rows of those points, -1 where there is none; fast in any order. Valid until the next call.

@@ -19,9 +19,9 @@ HWY_BEFORE_NAMESPACE();
 namespace corral::HWY_NAMESPACE {
 
 /// Calls worker.attempt(slot, first, last, are_new, sure_squared) for every slot with ranges of slots that hold all points
-/// within a squared distance, and whether they are others than in the call before of this worker; it says whether that was
-/// enough. If it was not it is called again with more cells, and at last for a few with all slots. The slots for which that
-/// would take long (far apart, or crowded) are returned, ascending.
+/// within a squared distance, and whether they differ from those of the previous call of this worker; it returns whether that was
+/// enough. If not, it is called again with more cells, and at last for a few with all slots. The slots for which that
+/// would take too long (isolated or crowded ones) are returned, ascending.
 class NearestSweep {
  public:
   explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}

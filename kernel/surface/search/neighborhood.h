@@ -14,8 +14,8 @@ struct Neighbor {
   double squared_distance;  ///< to the query, squared units of the points
 };
 
-/// Exact neighbour queries over a fixed set of finite points (CGAL's kd-tree inside). Answers do not depend on the tree:
-/// equal distances are decided by the lower index.
+/// Exact neighbour queries over a fixed set of finite points (CGAL's kd-tree inside). Results do not depend on the tree:
+/// ties go to the lower index.
 class PointIndex {
  public:
   /// Keeps its own copy of the points.

@@ -12,8 +12,8 @@
 
 namespace corral {
 
-/// Points sorted into cubic cells: the index of the loops that ask for the neighbourhood of every vertex, where a tree is
-/// several times slower. A *slot* is a place in the sorted order: by cell, then by x, y, z, then by row. Sums over
+/// Points sorted into cubic cells: the index for loops over the neighbourhood of every vertex, where a tree is several times
+/// slower. A *slot* is a position in the sorted order: by cell, then by x, y, z, then by row. Sums over
 /// neighbours run in this order, so that they do not depend on how the vertices are numbered.
 /// Plain form  tests/support/reference_surface.h
 class PointGrid {
@@ -29,7 +29,7 @@ class PointGrid {
 
   int size() const { return static_cast<int>(rows_.size()); }
   int row(int slot) const { return rows_[static_cast<std::size_t>(slot)]; }
-  const AlignedColumn& x() const { return x_; }  ///< by slot, padded with infinity, which is near to nothing
+  const AlignedColumn& x() const { return x_; }  ///< by slot, padded with infinity, which is within no distance
   const AlignedColumn& y() const { return y_; }
   const AlignedColumn& z() const { return z_; }
 
@@ -42,7 +42,7 @@ class PointGrid {
   /// How far each slot's point is from the nearest face of its cell, in sides of a cell, 0 .. 0.5.
   AlignedColumn from_faces() const;
 
-  /// How far from a point at such a distance everything is sure to lie in the cells up to `reach` from its own.
+  /// The radius around a point at such a distance within which all points lie in the cells up to `reach` from its own.
   double sure_radius(double from_face, int reach) const;
 
   /// Squared distance of a slot's point to the middle of its cell.
@@ -74,7 +74,7 @@ struct SlotRange {
   int begin, end;
 };
 
-/// Walks over cells in ascending order and tells which slots lie around each.
+/// Walks over cells in ascending order and gives the slots around each.
 class CellSweep {
  public:
   /// `reach`: cells up to this many away along each axis, at most kLargestReach.
@@ -90,7 +90,7 @@ class CellSweep {
   std::vector<std::size_t> cursors_;   // first cell that is not before it
 };
 
-/// What CellSweep tells of every cell, for those who walk more than once.
+/// What CellSweep gives for every cell, stored for loops that need it more than once.
 class CellNeighborhoods {
  public:
   CellNeighborhoods(const PointGrid& grid, int reach);

@@ -8,16 +8,16 @@
 
 namespace corral {
 
-/// Where a ray meets a surface first.
+/// Where a ray first meets a surface.
 struct RayHit {
   int triangle;     ///< row of Mesh::triangles
   double distance;  ///< from the origin of the ray, mesh units
   double cosine;    ///< of the angle between the ray and the normal of the triangle, in 0 .. 1
 };
 
-/// The triangles of a mesh, ready for rays and for other triangles (CGAL's tree of boxes inside, with exact decisions: no
-/// ray slips through between two triangles that share an edge). Triangles without area are not there. Queries may come
-/// from several threads at once.
+/// The triangles of a mesh, indexed for queries with rays and with other triangles (CGAL's tree of boxes inside, with exact
+/// decisions: no ray passes between two triangles that share an edge). Triangles without area are left out. Queries may
+/// come from several threads at once.
 class SurfaceTree {
  public:
   /// Throws InvalidInput as Mesh::validate does, or if no triangle has an area.
@@ -30,8 +30,8 @@ class SurfaceTree {
   /// The first triangle on the ray from `origin` along `direction` (a unit vector); either side of it counts.
   std::optional<RayHit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-  /// True if a triangle of `other`, in the frame of this mesh, has a point in common with one of this mesh. What lies
-  /// wholly inside a closed surface does not meet it.
+  /// True if a triangle of `other`, in the frame of this mesh, has a point in common with one of this mesh. A surface that
+  /// lies wholly inside a closed one does not meet it.
   bool meets(const Mesh& other) const;
 
  private:

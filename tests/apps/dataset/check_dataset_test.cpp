@@ -91,7 +91,7 @@ TEST_F(CheckDataset, NamesATruthThatIsMissingOrNotRigid) {
 
 TEST_F(CheckDataset, NamesATruthThatFitsBetterInverted) {
   place_.put("t1.xf", transform_text(truth(1).inverse()));
-  expect_finding("x1/t1.xf: ", "the truth fits better inverted: 100.0 % within 2 pr");
+  expect_finding("x1/t1.xf: ", "the inverse of the truth fits better: 100.0 % within 2 pr");
 }
 
 TEST_F(CheckDataset, NamesATruthThatFitsNeitherWay) {
@@ -110,7 +110,7 @@ TEST_F(CheckDataset, NamesWrongUnits) {
   metres.translation /= 1000;
   const std::string right = place_.text("t1.xf");
   place_.put("t1.xf", transform_text(metres));
-  expect_finding("x1/t1.xf: ", "wrong units: the truth fits once its translation is multiplied by 1000");
+  expect_finding("x1/t1.xf: ", "wrong units: the truth fits if its translation is multiplied by 1000");
   place_.put("t1.xf", right);
   for (const double factor : {1000.0, 0.1}) {
     const Mesh original = mesh("b1.ply");
@@ -126,15 +126,15 @@ TEST_F(CheckDataset, PrOutOfLineIsNamed) {
   far.vertices.conservativeResize(far.vertices.rows() + 1, 3);
   far.vertices.bottomRows(1) << 90, 90, 90;
   write_mesh(place_ / "b3.ply", far);
-  expect_finding("x3/b3.ply: ", "pr out of line: its part of the diagonal is 0.0");
+  expect_finding("x3/b3.ply: ", "unusual pr: its share of the diagonal is 0.0");
   write_mesh(place_ / "b3.ply", move_mesh(mesh("a3.ply"), truth(3)));
   set_.resolution = "5";
-  EXPECT_THAT(check().out, HasSubstr("x1: pr out of line: 5 for the pair"));
+  EXPECT_THAT(check().out, HasSubstr("x1: unusual pr: 5 for the pair"));
 }
 
 TEST_F(CheckDataset, DuplicatePairsAreNamedWhateverTheirFilesAreCalled) {
   set_.pairs.push_back({"again", "a1.ply", "b1.ply", "t1.xf", {}});
-  expect_finding("again: ", "duplicate pair: the surfaces and the truth are those of x1");
+  expect_finding("again: ", "duplicate pair: same surfaces and truth as x1");
   place_.put("copy.ply", place_.text("b1.ply"));
   place_.put("copy.xf", place_.text("t1.xf"));
   set_.pairs.back() = {"again", "a1.ply", "copy.ply", "copy.xf", {}};

@@ -138,9 +138,10 @@ class ImportU3or : public ::testing::Test {
 TEST_F(ImportU3or, TakesThePairsThatAreThere) {
   const Outcome outcome = place_.corral("dataset import u3or in -o out");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err,
-            "note: no model chef\nnote: no model parasaurolophus\nnote: model T-rex: T-rex_high.ply, the largest of 2\n"
-            "note: no truth chicken-rs12.xf\nnote: no scenes rs4\nnote: 2 of the 5 pairs of occlusion.txt are there\n");
+  EXPECT_EQ(
+      outcome.err,
+      "note: no model chef\nnote: no model parasaurolophus\nnote: model T-rex: T-rex_high.ply, the largest of 2\n"
+      "note: no truth chicken-rs12.xf\nnote: no scenes rs4\nnote: 2 of the 5 pairs of occlusion.txt are complete\n");
   const Dataset set = read_dataset(place_ / "out");
   EXPECT_EQ(set.kind, "recognition");
   EXPECT_EQ(set.units, "mm");

@@ -161,9 +161,9 @@ TEST(MakeU3or, RefusesModelsWithoutFacesOrOfOneName) {
   fs::copy_file(models[0], folder / "twin/thing0.ply");
   models.push_back(folder / "twin/thing0.ply");
   EXPECT_THAT(testing::io_error_of([&] { make_scenes(models, folder / "set"); }),
-              HasSubstr("a second model of the name thing0"));
+              HasSubstr("a second model named thing0"));
   models.back() = testing::put_text(folder / "cloud.xyz", "0 0 0\n1 0 0\n0 1 0\n");
-  EXPECT_THAT(testing::io_error_of([&] { make_scenes(models, folder / "set"); }), HasSubstr("cloud.xyz: no faces"));
+  EXPECT_THAT(testing::io_error_of([&] { make_scenes(models, folder / "set"); }), HasSubstr("cloud.xyz: has no faces"));
   EXPECT_THROW(make_scenes({}, folder / "set"), InvalidInput);
   EXPECT_FALSE(fs::exists(folder / "set"));
 }

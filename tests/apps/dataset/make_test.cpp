@@ -129,7 +129,7 @@ TEST(MakeB3r, GoesOnWhereItWasInterrupted) {
     fs::remove(place / ("set/" + std::string(name)));
   const Outcome half = place.corral("dataset check set");
   EXPECT_EQ(half.status, 3);
-  EXPECT_THAT(half.err, HasSubstr("set: is half made"));
+  EXPECT_THAT(half.err, HasSubstr("set: is unfinished"));
   place.put("set/scenes/ball-1_noise0.1.ply", "kept");
   place.put("set/scenes/odd-one-1_noise0.2.ply.part-aB3dE6", "what a killed write left");
   ASSERT_EQ(place.corral(line).status, 0);
@@ -151,13 +151,13 @@ TEST(MakeB3r, AFolderHoldsOneSet) {
     EXPECT_THAT(outcome.err, HasSubstr(says));
     EXPECT_EQ(testing::lines_in(outcome.err), 1U);
   };
-  expect_refusal("-o set --seed 2", "holds a data set made otherwise");
+  expect_refusal("-o set --seed 2", "holds a data set made from other input or options");
   write_mesh(place / "meshes/ball.ply", testing::bumpy_sphere(3, 2));
-  expect_refusal("-o set", "holds a data set made otherwise");
+  expect_refusal("-o set", "holds a data set made from other input or options");
   EXPECT_EQ(contents(place / "set"), before);
   fs::create_directory(place / "mine");
   place.put("mine/dataset.toml", "name = \"mine\"\n");
-  expect_refusal("-o mine", "was not made here");
+  expect_refusal("-o mine", "that this command did not make");
   EXPECT_EQ(contents(place / "mine").size(), 1U);
 }
 
@@ -185,7 +185,7 @@ TEST(MakeB3r, WhereItCannotWriteItSaysSoOnceAndLeavesNoSet) {
       EXPECT_NO_THROW(parse_ply(name, content));
     }
   }
-  EXPECT_THAT(place.corral("dataset check full").err, HasSubstr("half made"));
+  EXPECT_THAT(place.corral("dataset check full").err, HasSubstr("unfinished"));
   EXPECT_EQ(place.corral(line + "full").status, 0) << "with room again it goes on";
   EXPECT_EQ(place.corral("dataset check full").status, 0);
 }
@@ -195,10 +195,10 @@ TEST(MakeB3r, RefusesModelsThatItCannotTellApartOrRead) {
   const std::string line = "dataset make b3r --models meshes -o set";
   EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: cannot be read as a folder"));
   fs::create_directory(place / "meshes");
-  EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: no meshes, expected files that end in"));
+  EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: has no meshes, expected files that end in"));
   put_models(place);
   write_mesh(place / "meshes/odd-one.ply", testing::icosphere(1));
-  EXPECT_THAT(place.corral(line).err, HasSubstr("a second model of the name odd-one"));
+  EXPECT_THAT(place.corral(line).err, HasSubstr("a second model named odd-one"));
   fs::remove(place / "meshes/odd-one.ply");
   write_mesh(place / "meshes/small.ply", testing::icosphere(1));
   EXPECT_THAT(place.corral(line).err, HasSubstr("models/small.ply: has 42 vertices, expected at least 100"));
