@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program: one line of command, one answer. Everything it does is in commands/.
+// The main program: parses the command line and calls one of commands/.
 #include <exception>
 #include <new>
 
@@ -32,7 +32,7 @@ int run_action(const corral::Action& action) {
   }
 }
 
-/// What is wrong if a word stands where a command should and is none; else empty.
+/// An error message if a word in the place of a command is not one; else empty.
 std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   const CLI::App* command = &app;
   std::string path = "corral";
@@ -64,9 +64,9 @@ int main(int argc, char** argv) {
   const corral::BuildInfo build = corral::build_info();
   app.set_version_flag("--version", "corral " + build.version + ", commit " + build.commit);
   app.footer(
-      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded so, 1 anything else.\n"
-      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest "
-      "other.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded as failed, 1 anything else.\n"
+      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest other "
+      "vertex.\n"
       "'corral COMMAND --help' has examples.");
   corral::Action action;
   corral::add_run(app, action);

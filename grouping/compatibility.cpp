@@ -25,7 +25,7 @@ std::vector<double> ratio_scores(const std::vector<double>& ratios) {
 Indices marked_rows(const std::vector<std::uint8_t>& marks) {
   Indices rows(marks.size());
   std::size_t count = 0;
-  for (std::size_t row = 0; row < marks.size(); ++row) {  // without a branch, which no predictor would foresee
+  for (std::size_t row = 0; row < marks.size(); ++row) {  // without a branch, which could not be predicted
     rows[count] = static_cast<int>(row);
     count += marks[row];
   }

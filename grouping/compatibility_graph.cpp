@@ -53,7 +53,7 @@ double CompatibilityGraph::memory(int rows) {
 void CompatibilityGraph::multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const {
   Eigen::VectorXd rest = from, rounded, product;
   to = Eigen::VectorXd::Zero(size_);
-  for (int part = 0; part < 3; ++part) {  // what remains then is nothing beside the rounding of the sum
+  for (int part = 0; part < 3; ++part) {  // the rest is negligible beside the rounding of the sum
     rounded = rest;
     round_and_multiply(rounded, product);
     to += product;

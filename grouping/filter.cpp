@@ -65,7 +65,7 @@ FilterTable FilterTable::subset(const Indices& rows) const {
 float FilterTable::hide(int row) { return std::exchange(source_[0][static_cast<std::size_t>(row)], kNothing); }
 
 ConsistencyFilter::ConsistencyFilter(const FilterTable& table, double tolerance) {
-  const double farthest = 4;  // no distance in the table reaches it: a larger tolerance says no more
+  const double farthest = 4;  // no distance in the table reaches it: a larger tolerance has the same effect
   const double t = std::min(tolerance / table.unit(), farthest) * (1 + kSlack) + 2 * kFilterDistanceError;
   const auto scale = static_cast<float>(0.5 / t);
   const auto end = static_cast<std::size_t>(padded(table.rows(), kGroup));

@@ -115,7 +115,7 @@ HWY_FLATTEN void count_near_first_plane(const FilterTable& table, const PoseFilt
 }
 
 HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
-  constexpr int kStretch = 16 * kFloatLanes;  // rows between two looks at the count
+  constexpr int kStretch = 16 * kFloatLanes;  // rows between two checks of the count
   const Columns columns(table);
   const int end = table.padded_rows();
   int near = 0;

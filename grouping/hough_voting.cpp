@@ -73,7 +73,7 @@ class Accumulator {
 
   int bits_ = 1;
   std::vector<Slot> slots_;
-  Slot fullest_{Key{}, 0};  ///< sums only grow: the one that comes to lead is seen when it does
+  Slot fullest_{Key{}, 0};  ///< sums only grow, so that the largest is known at any time
 };
 
 Votes cast_votes(const CorrespondenceSet& matches) {

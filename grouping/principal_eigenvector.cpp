@@ -110,8 +110,8 @@ Eigenpair largest_of_tridiagonal(const Eigen::VectorXd& a, const Eigen::VectorXd
   return pair;
 }
 
-/// Lanczos iteration, its vectors rounded to what a fast product takes. What is believed in the end is not the recurrence
-/// but the product of the answer, which is the same sum of the products as the answer is of the vectors.
+/// Lanczos iteration with vectors rounded to the precision of a fast product. The result does not rely on the recurrence but
+/// on the product of the final vector, which is the same combination of products as the vector is of basis vectors.
 class LeaderSearch {
  public:
   LeaderSearch(const Subgraph& graph, double tie) : graph_(graph), tie_(tie) {}
@@ -127,7 +127,7 @@ class LeaderSearch {
       next /= norm;
       graph_.matrix.round_and_multiply(next, product);
       product = product.cwiseProduct(graph_.takes_part);
-      if (last > 0) {  // What rounding brought in of the others goes out again, and out of the product.
+      if (last > 0) {  // removes the components along the others that rounding introduced, also from the product
         projection.noalias() = basis.leftCols(last).transpose() * next;
         next.noalias() -= basis.leftCols(last) * projection;
         product.noalias() -= products.leftCols(last) * projection;

@@ -110,7 +110,7 @@ class Search {
     if (options_.confidence > 0) stop_when_confident(hypothesis.iteration);
   }
 
-  /// Enough triples that with this probability one of them held right matches only, if the best count is their number.
+  /// The number of triples of which, with this probability, one holds only correct matches, if the best count is their number.
   void stop_when_confident(int iteration) {
     const double all_right = std::pow(static_cast<double>(best_count_) / matches_.size(), 3);
     const double needed = std::log1p(-options_.confidence) / std::log1p(-all_right);

@@ -74,7 +74,7 @@ class Voting {
     return votes;
   }
 
-  /// Whom global_votes() asks.
+  /// Chooses the global voters.
   void set_global_voters(const Indices& rows) {
     global_voters_ = rows;
     voter_table_ = table_.subset(rows);

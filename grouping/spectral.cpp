@@ -28,8 +28,8 @@ Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similar
   return matrix;
 }
 
-/// The matches that are neither accepted nor in conflict with an accepted one, as nodes of a graph. Now and then the graph
-/// is renumbered to hold no others.
+/// The remaining matches, neither accepted nor in conflict with an accepted one, as nodes of a graph. From time to time the
+/// graph is renumbered to hold only these.
 class Alive {
  public:
   Alive(std::unique_ptr<GraphMatrix> graph, bool is_binary)
@@ -44,14 +44,14 @@ class Alive {
     std::iota(rows_.begin(), rows_.end(), 0);
   }
 
-  /// Whether anybody is compatible with anybody else.
+  /// Whether any two matches are compatible.
   bool has_edges() const { return (degrees_.array() > 1).any(); }
 
   /// Computes the eigenvector of all.
   void start() { entries_ = principal_eigenvector(*graph_); }
 
-  /// The node of the largest entry as it was computed last; entries within kTie are equal, and the first is meant. Nobody
-  /// if the largest is no more than that.
+  /// The node of the largest entry of the last eigenvector, the first of those within kTie; none if the largest is not above
+  /// kTie.
   int largest() const {
     const double most = count_ > 0 ? entries_.maxCoeff() : 0;
     if (!(most > kTie)) return kNobody;
@@ -84,11 +84,12 @@ class Alive {
   }
 
  private:
-  /// The first node that is compatible with all others. Where M has no entries but 0 and 1 it is the one that choose()
-  /// looks for: x_f = S / l, with S the sum of all entries and l the eigenvalue. A node that misses somebody has
-  /// x_i = (S - what it misses) / l and misses at least one x_k. That k has x_k >= x_f / (l - 1), for it is compatible with f
-  /// and with itself; and x_k >= (S - (count - degree) x_f) / l, for nobody exceeds f. With x_f >= count^(-1/2) and l between
-  /// the mean degree and count, f leads by count^(-5/2) at least, or (mean degree - count + least degree) times that.
+  /// The first node that is compatible with all others. Where M has only entries 0 and 1 it is the one that choose() looks
+  /// for: x_f = S / l, with S the sum of all entries and l the eigenvalue. A node that is not compatible with all has
+  /// x_i = (S - the entries of the others) / l and lacks at least one x_k. That k has x_k >= x_f / (l - 1), for it is
+  /// compatible with f and with itself; and x_k >= (S - (count - degree) x_f) / l, for no entry exceeds that of f. With
+  /// x_f >= count^(-1/2) and l between the mean degree and count, the entry of f exceeds all others by at least count^(-5/2),
+  /// or (mean degree - count + least degree) times that.
   int compatible_with_all() const {
     if (!is_binary_) return kNobody;
     double least = count_;
@@ -124,7 +125,7 @@ class Alive {
     entries_ = Eigen::VectorXd(entries_(nodes));
     degrees_ = Eigen::VectorXd(degrees_(nodes));
     takes_part_ = Eigen::VectorXd::Ones(graph_->size());
-    sum_of_squares_ = graph_->sum_of_squares();  // what was subtracted since left rounding behind
+    sum_of_squares_ = graph_->sum_of_squares();  // without the rounding of the subtractions since
   }
 
   std::unique_ptr<GraphMatrix> graph_;
@@ -132,9 +133,9 @@ class Alive {
   Indices rows_;                ///< of the table, by node
   Eigen::VectorXd takes_part_;  ///< 1 or 0, by node
   Eigen::VectorXd entries_;     ///< of the last eigenvector or near it, by node; 0 for those that left since
-  Eigen::VectorXd degrees_;     ///< number of compatible matches alive, with itself, by node
-  double sum_of_squares_;       ///< of the matrix of those alive
-  int count_;                   ///< of those alive
+  Eigen::VectorXd degrees_;     ///< number of compatible remaining matches, with itself, by node
+  double sum_of_squares_;       ///< of the matrix of the remaining matches
+  int count_;                   ///< of the remaining matches
   Eigen::VectorXd column_;
 };
 
@@ -150,7 +151,7 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
   else
     graph = std::make_unique<CompatibilityGraph>(matches, options.similarity);
   Alive alive(std::move(graph), !options.weighted);
-  if (!alive.has_edges()) return result;  // nobody agrees with anybody else
+  if (!alive.has_edges()) return result;  // no two matches are compatible
   if (options.once) alive.start();
   const auto next = [&] { return options.once ? alive.largest() : alive.choose(); };
   for (int node = next(); node != kNobody; node = next()) result.selected.push_back(alive.accept(node));

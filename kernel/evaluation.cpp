@@ -16,11 +16,11 @@ std::optional<double> ratio(double numerator, int denominator) {
 
 }  // namespace
 
-std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
+std::vector<bool> label_correct(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
                                 double threshold_pr) {
   matches.validate();
   if (!(threshold_pr >= 0) || !std::isfinite(threshold_pr))
-    throw InvalidInput("label_inliers", "threshold_pr", threshold_pr, "a finite length of at least 0");
+    throw InvalidInput("label_correct", "threshold_pr", threshold_pr, "a finite length of at least 0");
   const double threshold = threshold_pr * matches.resolution;
   const Points moved = target_from_source.apply(matches.source_points);
   std::vector<bool> labels(static_cast<std::size_t>(matches.size()));

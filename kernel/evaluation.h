@@ -13,7 +13,7 @@ namespace corral {
 ///
 /// Source    [yang2017evaluation], threshold 4 pr.
 /// Throws    InvalidInput: invalid table, or a threshold that is not finite and >= 0.
-std::vector<bool> label_inliers(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
+std::vector<bool> label_correct(const CorrespondenceSet& matches, const RigidTransform& target_from_source,
                                 double threshold_pr);
 
 /// Precision and recall of one selection; a ratio whose denominator is zero is absent, never 0.

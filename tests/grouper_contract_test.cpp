@@ -71,7 +71,7 @@ TEST_P(GrouperContract, EasyProblemIsSolved) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const SyntheticProblem problem = easy_problem(seed);
     const auto score =
-        score_grouping(label_inliers(problem.matches, problem.truth, 4), group(problem.matches).selected);
+        score_grouping(label_correct(problem.matches, problem.truth, 4), group(problem.matches).selected);
     EXPECT_GT(score.recall.value(), bar(lowest_recall)) << "seed " << seed;
     EXPECT_GT(score.precision.value(), bar(lowest_precision)) << "seed " << seed;
   }

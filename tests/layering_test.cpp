@@ -267,7 +267,7 @@ TEST(Layering, TheReadmeOfGroupingListsTheGroupersAsTheProgramDoes) {
   char buffer[4096];
   for (std::size_t count; (count = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) table.append(buffer, count);
   ASSERT_EQ(pclose(pipe), 0);
-  EXPECT_THAT(table, ::testing::StartsWith("| method |"));
+  EXPECT_THAT(table, ::testing::StartsWith("| grouper |"));
   EXPECT_NE(read(kRoot / "grouping/README.md").find(table), std::string::npos)
       << "the table of grouping/README.md should be:\n"
       << table;

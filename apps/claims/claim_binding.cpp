@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which levels and columns the numbers of a rule come from, or why there are none.
+// The levels and columns that the numbers of a rule come from, or why there are none.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -30,7 +30,7 @@ ClaimMeasure::ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const C
 ClaimMeasure::Levels ClaimMeasure::bind(const ClaimData& data, const std::string& experiment) {
   const auto found = data.find(experiment);
   if (found == data.end()) {
-    if (reason_.empty()) reason_ = "no experiment " + experiment + " in the run";
+    if (reason_.empty()) reason_ = "no experiment " + experiment + " in the study";
     return {};
   }
   Levels levels;
@@ -85,13 +85,13 @@ void ClaimMeasure::require_levels() {
   const std::size_t needed = is_trend ? 3 : is_series ? 2 : 1;
   if (levels.size() < needed)
     reason_ =
-        name + " has " + std::to_string(levels.size()) + " levels to go by, " + std::to_string(needed) + " needed";
+        name + " has " + std::to_string(levels.size()) + " usable levels, " + std::to_string(needed) + " needed";
   if (!with_.empty() || (part_.take != Take::Rise && part_.take != Take::RelativeDrop)) return;
   for (const Range& range : {part_.first, part_.last})
     if (range && within(levels, range, false).empty())
       reason_ = "no level of " + name + " from " + to_text(range->first) + " to " + to_text(range->second) + " has " +
                 std::to_string(book_.least_pairs) + " pairs";
-  if ((!part_.first || !part_.last) && levels.size() < 2) reason_ = name + " has only one level to go by";
+  if ((!part_.first || !part_.last) && levels.size() < 2) reason_ = name + " has only one usable level";
 }
 
 void ClaimMeasure::bind_partners() {

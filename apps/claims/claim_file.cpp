@@ -209,7 +209,7 @@ class PartReader {
   Comparison comparison(const std::string& text) const {
     std::vector<std::string> words = split(text, ' ');
     const auto malformed = [&] {
-      table_.fail("is", quoted(text) + " is no comparison such as 'gc >= 0.5 * ss - tau'");
+      table_.fail("is", quoted(text) + " is not a comparison such as 'gc >= 0.5 * ss - tau'");
     };
     if (words.size() < 3) malformed();
     Comparison comparison;
@@ -258,7 +258,7 @@ ClaimBook parse_claims(const std::string& path, const std::string& text) {
   for (const TomlTable& table : root.tables("claim")) {
     table.only({"id", "text", "note", "parts"});
     Claim claim{table.text("id").value_or(""), table.text("text").value_or(""), table.text("note").value_or(""), {}};
-    if (claim.id.empty() || !ids.insert(claim.id).second) table.fail("id", "expected one that no other claim has");
+    if (claim.id.empty() || !ids.insert(claim.id).second) table.fail("id", "expected an id that no other claim has");
     for (const TomlTable& part : table.tables("parts")) claim.parts.push_back(PartReader(book, part).read());
     const auto is_note = [](const ClaimPart& part) { return part.is_note; };
     if (std::all_of(claim.parts.begin(), claim.parts.end(), is_note)) table.fail("parts", "expected one or more rules");

@@ -94,7 +94,7 @@ struct ClaimBook {
   std::vector<std::string> slips;  ///< contradictions of the paper that are reported, not repaired
 };
 
-/// Throws IoError naming file, line and key; an unknown key or word comes with the nearest one.
+/// Throws IoError naming file, line and key, with a suggestion for an unknown key or word.
 ClaimBook read_claims(const std::string& path);
 /// The same of text that is in memory; `path` is for the messages.
 ClaimBook parse_claims(const std::string& path, const std::string& text);

@@ -45,7 +45,7 @@ std::string margin_text(double margin, const MarginUnit& unit) {
   return (margin < 0 ? "" : "+") + fixed(margin, unit.decimals) + " " + unit.name;
 }
 
-/// Where to look: the panel of each experiment, and why nothing or not all could be decided.
+/// References: the panel of each experiment, and why nothing or not everything could be decided.
 std::string remarks(const ClaimVerdict& verdict) {
   std::string text;
   for (const PartVerdict& part : verdict.parts) {
@@ -80,7 +80,7 @@ std::string places(const ClaimVerdict& verdict) {
   return text;
 }
 
-/// Under a heading of their own: the claims about one experiment, or those about several.
+/// The heading of a claim: its experiment, or several.
 std::string group_of(const ClaimVerdict& verdict) {
   return verdict.experiments.size() == 1 ? places(verdict) : "several experiments";
 }
@@ -111,8 +111,8 @@ std::string claims_text(const std::vector<ClaimVerdict>& verdicts, const std::ve
   std::string text;
   for (const std::string& group : groups) text += group_text(group, verdicts);
   text += tally(verdicts);
-  text += "weak: other in more than 20 % of 1000 resamples over pairs; sensitive: other with (P + R) / 2 for F1\n";
-  if (!slips.empty()) text += "\nContradictions and slips of the paper, reported and not repaired:\n";
+  text += "weak: more than 20 % of 1000 resamples over pairs differ; sensitive: differs with (P + R) / 2 for F1\n";
+  if (!slips.empty()) text += "\nContradictions and slips of the paper, reported but not corrected:\n";
   for (std::size_t i = 0; i < slips.size(); ++i) text += std::to_string(i + 1) + ". " + slips[i] + "\n";
   return text;
 }

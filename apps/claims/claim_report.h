@@ -9,10 +9,10 @@
 
 namespace corral {
 
-/// The verdicts under a heading for each experiment, with margins, parts and where to look, and the paper's slips below.
+/// The verdicts under a heading for each experiment, with margins, parts and references, and the paper's slips below.
 std::string claims_text(const std::vector<ClaimVerdict>& verdicts, const std::vector<std::string>& slips);
 
-/// The same as a list, one object a claim.
+/// The same as a list, one object per claim.
 Json claims_json(const std::vector<ClaimVerdict>& verdicts);
 
 }  // namespace corral

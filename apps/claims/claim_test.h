@@ -7,7 +7,7 @@
 
 namespace corral {
 
-/// How far a rule is from failing, or, below 0, from holding: in the unit of its numbers.
+/// The distance of a rule from failing or, if negative, from holding, in the unit of its numbers.
 struct Outcome {
   bool holds = false;
   double margin = 0;  ///< NaN if a number is missing
@@ -15,13 +15,13 @@ struct Outcome {
 
 /// What the numbers of a rule are.
 struct Scale {
-  double tau = 0;                ///< x beats y if it is better by more
+  double tau = 0;                ///< x beats y if it is better by more than this
   bool is_logarithm = false;     ///< of times: constants and factors are taken to logarithms too
   bool lower_is_better = false;  ///< for ranks
 };
 
 /// Whether numbers, one for each method (or a single one), pass the comparisons and sets of a rule. Margins closer to 0 than
-/// 1e-12 are 0, so that "exactly tau" does not hang on rounding: it is no more than tau.
+/// 1e-12 are 0, so that "exactly tau" does not depend on rounding: it does not exceed tau.
 Outcome test_numbers(const ClaimPart& part, const std::vector<double>& numbers, const Scale& scale);
 
 /// At how many of the levels a rule has to hold.
@@ -29,10 +29,10 @@ int needed_levels(Quantifier quantifier, int levels);
 /// Over the levels: the margin is that of the level that decides.
 Outcome test_levels(Quantifier quantifier, std::vector<Outcome> levels);
 
-/// 1 + how many beat each.
+/// 1 + the number of others that beat each.
 std::vector<int> ranks_of(const std::vector<double>& numbers, const Scale& scale);
 
-/// Each number above the largest other one.
+/// Each number minus the largest other one.
 std::vector<double> leads_of(const std::vector<double>& numbers);
 
 }  // namespace corral

@@ -37,7 +37,7 @@ bool asks_for(const ClaimBook& book, const std::string& experiment, Quantity::Ki
 }
 
 /// Keypoints for 100,000 vertices of the source, at the first row of each source.
-std::vector<RowNumbers> keypoint_densities(const RunFolder& run, const ExperimentTable& table) {
+std::vector<RowNumbers> keypoint_densities(const StudyFolder& run, const ExperimentTable& table) {
   std::set<std::string> seen;
   std::vector<RowNumbers> columns;
   for (const LevelTable& level : table.levels) {
@@ -52,9 +52,9 @@ std::vector<RowNumbers> keypoint_densities(const RunFolder& run, const Experimen
   return columns;
 }
 
-void add_experiment(Study& study, const ClaimBook& book, const RunFolder& run, const ExperimentTable& table) {
+void add_experiment(Study& study, const ClaimBook& book, const StudyFolder& run, const ExperimentTable& table) {
   const std::string& name = table.info.name;
-  if (study.data.count(name)) throw IoError(run.folder, "", "the experiment " + name + " stands in another run too");
+  if (study.data.count(name)) throw IoError(run.folder, "", "the experiment " + name + " is in another study too");
   study.figures[name] = table.info.figure;
   std::vector<RowNumbers> agreement(table.levels.size()), keypoints(table.levels.size());
   if (asks_for(book, name, Quantity::Kind::Agreement)) agreement = selection_agreement(run, table, book.methods);

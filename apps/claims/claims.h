@@ -19,7 +19,7 @@ struct MarginUnit {
   int decimals = 3;
 };
 
-/// What came out of one rule.
+/// The result of one rule.
 struct PartVerdict {
   std::string id;  ///< such as "C1a"; that of the claim if it has one rule
   Verdict verdict = Verdict::Undecidable;
@@ -30,11 +30,11 @@ struct PartVerdict {
   bool is_note = false;
 };
 
-/// What came out of a claim. It holds if all its rules hold, fails if one fails.
+/// The result of a claim. It holds if all its rules hold, fails if one fails.
 struct ClaimVerdict {
   std::string id, text, note;
   Verdict verdict = Verdict::Undecidable;
-  std::optional<double> margin;  ///< the least of its rules'
+  std::optional<double> margin;  ///< the least margin of its rules
   MarginUnit unit;
   double changed = 0;         ///< share of the resamples over pairs with another verdict
   bool is_weak = false;       ///< more than 20 %

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral align: views of one object find their common frame.
+// corral align: views of one object into one frame.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -29,13 +29,13 @@ std::vector<std::string> view_names(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     names.push_back(view_name(path));
     if (std::count(names.begin(), names.end(), names.back()) > 1)
-      throw UsageError("two views are called '" + names.back() + "', expected a name of its own for each");
+      throw UsageError("two views are named '" + names.back() + "', expected a different name for each");
   }
   return names;
 }
 
 int align(const Settings& settings) {
-  if (settings.views.size() < 2) throw UsageError("expected two views at least");
+  if (settings.views.size() < 2) throw UsageError("expected at least two views");
   const std::vector<std::string> names = view_names(settings.views);
   const ViewOptions sensor = view_options(settings.sensor);
   std::vector<Mesh> meshes;
@@ -63,8 +63,8 @@ int align(const Settings& settings) {
     put("", alignment_text(names, aligned));
   const int parts = 1 + *std::max_element(aligned.part.begin(), aligned.part.end());
   if (parts > 1)
-    say("note: nothing connects the " + std::to_string(parts) + " parts; each has the frame of its first view");
-  if (!aligned.converged) say("note: the pose graph was still moving when it was stopped");
+    say("note: the views form " + std::to_string(parts) + " unconnected parts; each has the frame of its first view");
+  if (!aligned.converged) say("note: the pose graph did not converge");
   return kOk;
 }
 
@@ -74,7 +74,7 @@ void add_align(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("align", "Views of one object into one frame, with a verdict on every pair");
   auto settings = std::make_shared<Settings>();
   command
-      ->add_option("views", settings->views, "Range scans; point lists (.txt too) get faces as triangulate makes them")
+      ->add_option("views", settings->views, "Range scans; lists of points (.txt too) get faces as by 'corral triangulate'")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", settings->output, "Folder for <view>.xf (world from view), pairs.csv and poses/")
@@ -82,17 +82,16 @@ void add_align(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--poses", settings->poses,
-                   "Judge these poses instead of looking for some: source,target,transform[,weight] by view name")
+                   "Judge these poses instead of searching for some: source,target,transform[,weight] by view name")
       ->type_name("FILE");
   add_sensor_options(*command, settings->sensor);
-  command->add_option("--threads", settings->threads, "0: as many as the machine has")->capture_default_str();
+  command->add_option("--threads", settings->threads, "0: as many as there are processors")->capture_default_str();
   command->add_flag("--json", settings->json, "Poses, pairs and parts as JSON on standard output");
   command->footer(
-      "Verdicts: agrees (other pairs lead there too), contradicts (they lead elsewhere), unchecked (none leads "
-      "there).\n"
-      "off pr: how far the pair moves the points of its source from where the alignment has them. in front %: points "
-      "of\n"
-      "a view that the other would have seen before its own, the larger share of both; a right pose has next to none.\n"
+      "Verdicts: agrees (other pairs lead to the same pose), contradicts (they lead to another one), unchecked (no\n"
+      "other pairs connect the two views). off pr: distance between the source points under the pose of the pair and\n"
+      "under the alignment. in front %: share of the points of a view that lie in front of what the other saw, the\n"
+      "larger of the two; almost none under a correct pose.\n"
       "Examples:\n  corral align view*.txt -o aligned\n"
       "  corral align scan*.ply --direction 0,0,-1 -o aligned --json\n"
       "  corral align view*.txt --poses aligned/pairs.csv -o judged");

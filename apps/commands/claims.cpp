@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral claims: which of the paper's statements a run bears out.
+// corral claims: which of the paper's findings a study confirms.
 #include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
 #include "apps/runtime/output.h"
@@ -15,7 +15,7 @@ struct Settings {
 
 int judge(const Settings& settings) {
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
-  const std::vector<RunFolder> runs = read_runs(settings.runs);
+  const std::vector<StudyFolder> runs = read_runs(settings.runs);
   const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs));
   if (!settings.json) {
     put("", claims_text(verdicts, book.slips));
@@ -28,14 +28,14 @@ int judge(const Settings& settings) {
 }  // namespace
 
 void add_claims(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("claims", "Which of the paper's findings a run bears out");
+  auto* command = app.add_subcommand("claims", "Which of the paper's findings a study confirms");
   auto settings = std::make_shared<Settings>();
-  command->add_option("runs", settings->runs, "Folders of corral evaluate; several are put together")
-      ->type_name("RUN")
+  command->add_option("studies", settings->runs, "Folders of 'corral evaluate'; several are combined")
+      ->type_name("STUDY")
       ->required();
   command->add_option("--claims", settings->claims, "Claims of your own, as paper/claims.toml")->type_name("FILE");
   command->add_flag("--json", settings->json, "As JSON");
-  command->footer("Examples:\n  corral claims run\n  corral claims run time-run --json");
+  command->footer("Examples:\n  corral claims runs/all\n  corral claims runs/all runs/time --json");
   command->callback([settings, &action] { action = [settings] { return judge(*settings); }; });
 }
 

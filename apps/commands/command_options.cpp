@@ -72,7 +72,7 @@ void add_match_options(CLI::App& command, MatchSettings& settings) {
       ->expected(3)
       ->default_str("0,0,0")
       ->type_name("X,Y,Z");
-  option("--threads", settings.threads, "0: as many as there are; results do not depend on it");
+  option("--threads", settings.threads, "0: as many as there are processors; results do not depend on it");
 }
 
 void check_usage(const MatchSettings& settings) {
@@ -99,7 +99,7 @@ OptionsByName parse_set(const std::vector<std::string>& set) {
     const std::string name = text.substr(0, dot);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       const std::string nearest = nearest_name(name, known);
-      throw UsageError("--set " + text + ": no grouper, detector or descriptor is called '" + name + "'" +
+      throw UsageError("--set " + text + ": no grouper, detector or descriptor is named '" + name + "'" +
                        (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
     }
     if (!options[name].emplace(text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)).second)
@@ -152,7 +152,7 @@ Eigen::Vector3d parse_vector(const std::string& option, const std::string& text)
 }
 
 void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "0: as many as there are; results do not depend on it")
+  command.add_option("--threads", threads, "0: as many as there are processors; results do not depend on it")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
 }
@@ -163,7 +163,7 @@ void add_sensor_options(CLI::App& command, SensorSettings& settings) {
                      ->capture_default_str();
   command
       .add_option("--direction", settings.direction,
-                  "The way the sensor looks, if it is far away or its position unknown")
+                  "Viewing direction of the sensor, if it is far away or its position is unknown")
       ->type_name("X,Y,Z")
       ->excludes(sensor);
 }
@@ -182,8 +182,8 @@ void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
   bytes = static_cast<std::uint64_t>(half_of_memory());
   command
       .add_option("--memory-limit", bytes,
-                  "Most memory that a method may hold, such as 500MB or 2GB; one that would need more is not asked "
-                  "(default: half of the machine)")
+                  "Most memory that a grouper may use, such as 500MB or 2GB; one that would need more is not called "
+                  "(default: half of the machine's)")
       ->transform(CLI::AsSizeValue(true));
 }
 

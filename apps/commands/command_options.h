@@ -38,7 +38,7 @@ void check_threshold(double threshold_pr);
 /// The text of an option as a point or direction "x,y,z".
 Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);
 
-/// --threads, checked where workers() are made of it.
+/// --threads, checked here, for workers().
 void add_threads(CLI::App& command, int& threads);
 
 /// --sensor and --direction, as typed.

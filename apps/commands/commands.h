@@ -10,12 +10,12 @@ namespace corral {
 /// Exit statuses of the program.
 enum ExitStatus { kOk = 0, kOtherFailure = 1, kUsage = 2, kBadInput = 3, kPartial = 4 };
 
-/// The command line asks for what does not exist.
+/// The command line is wrong.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the chosen subcommand will do; set while the command line is parsed, run afterwards. Returns the exit status.
+/// The work of the chosen subcommand; set while the command line is parsed, called afterwards. Returns the exit status.
 using Action = std::function<int()>;
 
 // Each adds one subcommand that sets `action`.

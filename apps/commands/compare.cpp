@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral compare: which differences between the groupers of a run are more than chance.
+// corral compare: which differences between the groupers of a study are more than chance.
 #include <algorithm>
 
 #include "apps/commands/commands.h"
@@ -48,7 +48,7 @@ Json to_json(const MethodComparison& comparison) {
           {"levels", levels}};
 }
 
-/// Small ones with their order of magnitude.
+/// Four decimals, or a bound for smaller ones.
 std::string p_text(double p) { return p < 0.0001 ? "<0.0001" : fixed(p, 4); }
 
 std::string interval_text(const MeanInterval& interval, int decimals) {
@@ -56,7 +56,7 @@ std::string interval_text(const MeanInterval& interval, int decimals) {
 }
 
 std::string means_text(const MethodComparison& comparison) {
-  TextTable table({"method", "mean", "95 % interval", "average rank"});
+  TextTable table({"grouper", "mean", "95 % interval", "average rank"});
   for (std::size_t i = 0; i < comparison.means.size(); ++i)
     table.add({comparison.methods[i], fixed(comparison.means[i].mean, 4), interval_text(comparison.means[i], 4),
                fixed(comparison.ranks.average_ranks[i], 2)});
@@ -64,7 +64,7 @@ std::string means_text(const MethodComparison& comparison) {
                      p_text(comparison.ranks.p) + "; average ranks further apart than " +
                      fixed(comparison.ranks.critical_difference, 3) + " differ (Nemenyi, 5 %)\n";
   for (const std::vector<int>& clique : comparison.ranks.cliques) {
-    text += "not told apart by it:";
+    text += "not significantly different:";
     for (const int method : clique) text += " " + comparison.methods[static_cast<std::size_t>(method)];
     text += "\n";
   }
@@ -73,7 +73,7 @@ std::string means_text(const MethodComparison& comparison) {
 
 std::string tests_text(const MethodComparison& comparison, const Measure& measure) {
   TextTable table(
-      {"methods", "difference", "95 % interval", measure.has(kYesOrNo) ? "McNemar p" : "Wilcoxon p", "Holm's p"});
+      {"groupers", "difference", "95 % interval", measure.has(kYesOrNo) ? "McNemar p" : "Wilcoxon p", "Holm's p"});
   for (const MethodPair& pair : comparison.tests)
     table.add({pair.first + " - " + pair.second, fixed(pair.difference.mean, 4), interval_text(pair.difference, 4),
                p_text(pair.p) + (pair.is_exact ? "" : "~"), p_text(pair.adjusted_p)});
@@ -108,7 +108,7 @@ std::string levels_text(const MethodComparison& comparison) {
 std::string to_text(const MethodComparison& comparison, const Measure& measure) {
   std::string text = comparison.experiment + ": " + measure.word() + " on " + std::to_string(comparison.pairs) +
                      (comparison.pairs == 1 ? " pair" : " pairs") +
-                     " (all levels; empty selections count as 0, pairs without true matches are left out)\n";
+                     " (all levels; empty selections count as 0, pairs without correct matches are left out)\n";
   if (comparison.means.empty()) return text + "nothing to compare\n\n";
   return text + means_text(comparison) + "\n" + tests_text(comparison, measure) +
          "\nBy level, with the 95 % interval\n" + levels_text(comparison) + "\n";
@@ -118,13 +118,13 @@ int compare(const Settings& settings) {
   const Measure& measure = metric_of(settings.metric);
   std::vector<MethodComparison> comparisons;
   std::string names;
-  for (const ExperimentTable& table : experiment_tables(read_run(settings.run))) {
+  for (const ExperimentTable& table : experiment_tables(read_study(settings.run))) {
     names += (names.empty() ? "" : ", ") + table.info.name;
     if (settings.experiment.empty() || settings.experiment == table.info.name)
       comparisons.push_back(compare_methods(table, measure));
   }
   if (comparisons.empty() && !settings.experiment.empty())
-    throw UsageError("--experiment " + settings.experiment + ": the run has " + (names.empty() ? "none" : names));
+    throw UsageError("--experiment " + settings.experiment + ": the study has " + (names.empty() ? "none" : names));
   Json json = Json::array();
   std::string text;
   for (const MethodComparison& comparison : comparisons) {
@@ -141,9 +141,10 @@ int compare(const Settings& settings) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("compare", "Which differences between the groupers of a run are more than chance");
+  auto* command =
+      app.add_subcommand("compare", "Which differences between the groupers of a study are more than chance");
   auto settings = std::make_shared<Settings>();
-  command->add_option("run", settings->run, "Folder of corral evaluate")->type_name("RUN")->required();
+  command->add_option("study", settings->run, "Folder of 'corral evaluate'")->type_name("STUDY")->required();
   command->add_option("--metric", settings->metric, "What to compare by (success: refined mean error of at most 5 pr)")
       ->check(CLI::IsMember(metric_names()))
       ->capture_default_str();
@@ -151,10 +152,10 @@ void add_compare(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
       "Means with bootstrap intervals over pairs, Friedman's test and average ranks with Nemenyi's critical\n"
-      "difference, and for each two groupers Wilcoxon's signed-rank test (McNemar's for success) with Holm's\n"
+      "difference, and for every two groupers Wilcoxon's signed-rank test (McNemar's for success) with Holm's\n"
       "adjustment.\n"
-      "Examples:\n  corral compare run --metric precision\n  corral compare run --metric success --experiment noise "
-      "--json");
+      "Examples:\n  corral compare runs/all --metric precision\n"
+      "  corral compare runs/all --metric success --experiment noise --json");
   command->callback([settings, &action] { action = [settings] { return compare(*settings); }; });
 }
 

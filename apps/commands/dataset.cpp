@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral dataset: what a study runs on. Checked, listed and measured here; made and imported in the files beside.
+// corral dataset: check, list and measure data sets; dataset_make.cpp and dataset_import.cpp make and import them.
 #include <algorithm>
 
 #include "apps/commands/command_options.h"
@@ -41,8 +41,8 @@ int check(const CheckSettings& settings) {
     put("", text);
   }
   say(settings.folder + ": " + std::to_string(dataset.pairs.size()) + " pairs, " +
-      (findings.empty() ? "nothing wrong"
-                        : std::to_string(findings.size()) + (findings.size() == 1 ? " thing wrong" : " things wrong")));
+      (findings.empty() ? "no problems"
+                        : std::to_string(findings.size()) + (findings.size() == 1 ? " problem" : " problems")));
   return findings.empty() ? kOk : kBadInput;
 }
 
@@ -105,7 +105,7 @@ std::string measures_csv(const Dataset& dataset, const std::vector<PairMeasures>
   return csv_text(table);
 }
 
-/// The measured values in the attributes of their names; what stands there already is published, and stays.
+/// Writes the measured values to the attributes of their names; existing values are published ones, and stay.
 void write_attributes(Dataset dataset, const std::vector<PairMeasures>& measured) {
   for (std::size_t place = 0; place < measure_names().size(); ++place) {
     const auto has_it = [&](const PairMeasures& each) { return measure(each, place).has_value(); };
@@ -167,20 +167,19 @@ int measure_all(const MeasureSettings& settings) {
   const auto lost = std::count_if(measured.begin(), measured.end(), [](const auto& each) { return !each.overlap; });
   if (lost == 0) return kOk;
   say(std::to_string(lost) + " of " + std::to_string(measured.size()) +
-      " pairs could not be measured: 'corral dataset check' says why; a pair without a truth cannot");
+      " pairs could not be measured: 'corral dataset check' says why; a pair without a truth cannot be");
   return kPartial;
 }
 
 void add_check(CLI::App& dataset, Action& action) {
-  auto* command = dataset.add_subcommand("check", "What is wrong with a data set, file by file");
+  auto* command = dataset.add_subcommand("check", "The problems of a data set, file by file");
   auto settings = std::make_shared<CheckSettings>();
   command->add_option("folder", settings->folder, "Folder with dataset.toml and pairs.csv")->required();
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "The findings as JSON on standard output");
   command->footer(
-      "Found are files that are missing or unreadable, truths that are not rigid, that fit better inverted or not at "
-      "all,\n"
-      "wrong units, pr out of line, duplicate pairs. One line each; exit status 3 if there is any.\n"
+      "Reports files that are missing or unreadable, truths that are not rigid or fit better inverted or not at all,\n"
+      "wrong units, unusual resolutions and duplicate pairs, in one line each; the exit status is 3 if there are any.\n"
       "Example:\n  corral dataset check data/b3r");
   command->callback([settings, &action] { action = [settings] { return check(*settings); }; });
 }
@@ -201,15 +200,14 @@ void add_measure(CLI::App& dataset, Action& action) {
   command->add_option("-o,--output", settings->output, "A table of all pairs (CSV)")->type_name("FILE");
   command->add_flag(
       "--matches", settings->with_matches,
-      "Match every pair too: ratio of right matches (4 pr), and how many frames of these agree (10 degrees)");
-  command->add_flag("--write", settings->write, "Fill the attributes of these names in pairs.csv where they are empty");
+      "Also match every pair: share of correct matches (4 pr), and share of these whose frames agree (10 degrees)");
+  command->add_flag("--write", settings->write, "Write the values to pairs.csv where they are empty there");
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "Values and histograms as JSON on standard output");
   command->footer(
-      "overlap: vertices with one of the other surface within 2 pr, the smaller of both counts over the smaller "
-      "surface.\n"
-      "occlusion: 1 - area of the source that the target shares within 2 pr / its whole area; clutter: the same of the "
-      "target.\n"
+      "overlap: vertices with a vertex of the other surface within 2 pr; the smaller of the two counts over the smaller\n"
+      "number of vertices. occlusion: 1 - share of the source's area that lies within 2 pr of the target; clutter: the\n"
+      "same for the target.\n"
       "Examples:\n  corral dataset measure data/mine --output measured.csv\n"
       "  corral dataset measure data/mine --matches --write");
   command->callback([settings, &action] { action = [settings] { return measure_all(*settings); }; });
@@ -218,7 +216,7 @@ void add_measure(CLI::App& dataset, Action& action) {
 }  // namespace
 
 void add_dataset(CLI::App& app, Action& action) {
-  auto* dataset = app.add_subcommand("dataset", "The sets that a study runs on: check, list, measure, make, import");
+  auto* dataset = app.add_subcommand("dataset", "Data sets: check, list, measure, make, import");
   dataset->require_subcommand(1);
   add_check(*dataset, action);
   add_list(*dataset, action);

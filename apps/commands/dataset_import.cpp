@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // corral dataset import: published folders as data sets. An importer is a function import_x(options, progress) that returns
-// what is to be said, and a function here.
+// notes for the user, and a function here.
 #include "apps/commands/command_options.h"
 #include "apps/dataset/import_b3r.h"
 #include "apps/dataset/import_u3m.h"
@@ -11,7 +11,7 @@
 namespace corral {
 namespace {
 
-/// What all importers have.
+/// The options that all importers have.
 void add_folders(CLI::App& command, std::string& folder, std::string& output) {
   command.add_option("folder", folder, "Folder of the published files")->type_name("FOLDER")->required();
   command.add_option("-o,--output", output, "Folder of the new set; the meshes stay where they are")
@@ -35,15 +35,14 @@ void add_b3r(CLI::App& import, Action& action) {
   command
       ->add_option(
           "--levels", settings->levels,
-          "study: 9 levels of noise and 9 of density, made from models and truths; stored: the noisy scenes as "
-          "they are")
+          "study: 9 levels of noise and 9 of density, made from models and truths; stored: the published noisy scenes")
       ->check(CLI::IsMember({"study", "stored"}))
       ->capture_default_str();
   command->add_option("--seed", settings->options.seed, "Seed of noise and density")->capture_default_str();
   add_threads(*command, settings->threads);
   command->footer(
-      "'corral dataset list' shows the layout; what is missing is said and left out. Interrupted, the same command "
-      "goes on.\n"
+      "'corral dataset list' shows the layout; missing parts are reported and left out. An interrupted command continues\n"
+      "when it is repeated.\n"
       "Example:\n  corral dataset import b3r ~/b3r -o data/b3r");
   command->callback([settings, &action] {
     action = [settings]() -> int {
@@ -70,7 +69,7 @@ void add_u3or(CLI::App& import, Action& action) {
   add_folders(*command, settings->options.folder, settings->options.output);
   add_threads(*command, settings->threads);
   command->footer(
-      "'corral dataset list' shows the layout; what is missing is said and left out.\n"
+      "'corral dataset list' shows the layout; missing parts are reported and left out.\n"
       "Example:\n  corral dataset import u3or ~/u3or -o data/u3or");
   command->callback([settings, &action] {
     action = [settings]() -> int {
@@ -93,22 +92,23 @@ void add_u3m(CLI::App& import, Action& action) {
     int threads = 0;
   };
   auto* command =
-      import.add_subcommand("u3m", "The UWA views, or any views of objects: makes the truth that they lack");
+      import.add_subcommand("u3m", "The UWA views, or any views of objects, with a truth computed by aligning them");
   auto settings = std::make_shared<Settings>();
   add_folders(*command, settings->options.folder, settings->options.output);
   command
       ->add_option(
           "--truth", settings->options.truth,
-          "Published transforms in place of those made: VIEW-to-ANYTHING.xf into one frame, or VIEW-to-VIEW.xf")
+          "Use published transforms instead: VIEW-to-ANYTHING.xf into one frame, or VIEW-to-VIEW.xf")
       ->type_name("FOLDER");
   command
-      ->add_option("--object", settings->options.object, "What all views show; else their names without numbers say it")
+      ->add_option("--object", settings->options.object,
+                   "The object that all views show (default: their names without numbers)")
       ->type_name("NAME");
   add_sensor_options(*command, settings->sensor);
   add_threads(*command, settings->threads);
   command->footer(
-      "Views are meshes, or lists of points seen by a sensor. Kept are pairs that overlap by 30 to 90 %; every doubt "
-      "is said.\n"
+      "Views are meshes, or lists of points seen by a sensor. Pairs that overlap by 30 to 90 % are kept; doubtful ones\n"
+      "are reported.\n"
       "Examples:\n  corral dataset import u3m ~/u3m -o data/u3m\n"
       "  corral dataset import u3m ~/u3m/views -o data/u3m --truth ~/u3m/gt");
   command->callback([settings, &action] {
@@ -129,7 +129,7 @@ void add_u3m(CLI::App& import, Action& action) {
 }  // namespace
 
 void add_dataset_import(CLI::App& dataset, Action& action) {
-  auto* import = dataset.add_subcommand("import", "A published set from the folder that was downloaded");
+  auto* import = dataset.add_subcommand("import", "A published set from its downloaded folder");
   import->require_subcommand(1);
   add_b3r(*import, action);
   add_u3or(*import, action);

@@ -17,11 +17,11 @@ void add_output(CLI::App& command, std::string& output) {
 }
 
 void add_seed(CLI::App& command, std::uint64_t& seed) {
-  command.add_option("--seed", seed, "Seed of all that is random")->capture_default_str();
+  command.add_option("--seed", seed, "Random seed")->capture_default_str();
 }
 
 void add_models(CLI::App& command, std::string& models) {
-  command.add_option("--models", models, "Folder of the models: every mesh in it")->type_name("FOLDER")->required();
+  command.add_option("--models", models, "Folder of models; every mesh in it is used")->type_name("FOLDER")->required();
 }
 
 void add_noise(CLI::App& command, double& noise_pr) {
@@ -54,7 +54,7 @@ void add_b3r(CLI::App& make, Action& action) {
       ->capture_default_str();
   add_threads(*command, settings->threads);
   command->footer(
-      "Noise of 0.05 .. 0.45 pr, densities of 0.9 .. 0.1. Interrupted, the same command goes on.\n"
+      "Noise of 0.05 .. 0.45 pr, densities of 0.9 .. 0.1. An interrupted command continues when it is repeated.\n"
       "Example:\n  corral dataset make b3r --models meshes -o data/b3r --scenes-per-model 2");
   command->callback([settings, &action] {
     action = [settings]() -> int {
@@ -79,9 +79,8 @@ void add_u3or(CLI::App& make, Action& action) {
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Scenes of 4 and 5 models by turns, chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 "
-      "%;\n"
-      "how far they do is said in the end. Interrupted, the same command goes on.\n"
+      "Scenes of 4 and 5 models in turn, chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 %;\n"
+      "their distribution is printed at the end. An interrupted command continues when it is repeated.\n"
       "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 12");
   command->callback([settings, &action] {
     action = [settings]() -> int {
@@ -109,8 +108,8 @@ void add_u3m(CLI::App& make, Action& action) {
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Kept are pairs of views that overlap by 30 to 90 %; their truth is exact. Interrupted, the same command goes "
-      "on.\n"
+      "Pairs of views that overlap by 30 to 90 % are kept; their truth is exact. An interrupted command continues when\n"
+      "it is repeated.\n"
       "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 8");
   command->callback([settings, &action] {
     action = [settings]() -> int {
@@ -127,18 +126,18 @@ void add_default(CLI::App& make, Action& action) {
     MakeDefaultOptions options;
     int threads = 0;
   };
-  auto* command = make.add_subcommand("default", "All sets of the study from meshes that Debian packages bring");
+  auto* command = make.add_subcommand("default", "All sets of the study from meshes in Debian packages");
   auto settings = std::make_shared<Settings>();
   command->add_option("--meshes", settings->options.meshes, "Folder of libcgal-demo's meshes")
       ->type_name("FOLDER")
       ->required();
-  command->add_option("--scenes", settings->options.scenes, "Folder of opencv-doc's scenes; without it no real ones")
+  command->add_option("--scenes", settings->options.scenes, "Folder of opencv-doc's scenes; without it no real scenes")
       ->type_name("FOLDER");
   add_output(*command, settings->options.output);
   add_seed(*command, settings->options.seed);
   add_threads(*command, settings->threads);
   command->footer(
-      "'corral dataset list' says which files it takes. Interrupted, the same command goes on.\n"
+      "'corral dataset list' lists the files that it uses. An interrupted command continues when it is repeated.\n"
       "Example:\n  corral dataset make default --meshes build/data/meshes --scenes build/data/scenes -o "
       "build/data/default");
   command->callback([settings, &action] {

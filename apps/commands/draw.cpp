@@ -35,15 +35,15 @@ std::string title_of(const std::string& path) {
 void check(const Settings& settings) {
   check_threshold(settings.threshold_pr);
   if (settings.matches.empty() == settings.poses.empty())
-    throw UsageError("expected --matches or --pose: one of them says what to draw");
-  if (settings.matches.empty() && !settings.groups.empty()) throw UsageError("--group needs its --matches");
+    throw UsageError("expected either --matches or --pose");
+  if (settings.matches.empty() && !settings.groups.empty()) throw UsageError("--group needs --matches");
   if (settings.width < 200 || settings.width > 3000) throw UsageError("--width: expected 200 to 3000 pixels");
   if (std::filesystem::path(settings.output).extension() != ".png")
     throw UsageError("--output " + settings.output + ": expected a name that ends in .png");
   check_writable(settings.output);
 }
 
-/// Throws IoError where a match is not at the vertex that it names: the table is that of other meshes.
+/// Throws IoError where a match is not at its vertex: the table belongs to other meshes.
 void check_vertices(const CorrespondenceSet& matches, const PairScene& scene, const std::string& path) {
   const auto check = [&](const Points& points, const Indices& keypoints, const Points& vertices, const char* side) {
     for (std::size_t i = 0; i < keypoints.size(); ++i) {
@@ -64,7 +64,7 @@ Image draw_groups(PairScene& scene, const Settings& settings) {
   check_vertices(matches, scene, settings.matches);
   scene.source_points = matches.source_points;
   scene.target_points = matches.target_points;
-  if (scene.truth) scene.right = label_inliers(matches, *scene.truth, settings.threshold_pr);
+  if (scene.truth) scene.correct = label_correct(matches, *scene.truth, settings.threshold_pr);
   std::vector<DrawnGroup> groups;
   for (const std::string& path : settings.groups)
     groups.push_back({title_of(path), read_group_of(path, matches.size()).selected});
@@ -107,20 +107,20 @@ void add_draw(CLI::App& app, Action& action) {
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
   command->add_option("--matches", settings->matches, "Table of matches: draws them between the two meshes")
       ->type_name("FILE");
-  command->add_option("--group", settings->groups, "Selected rows of it; for several files, a sheet of pictures")
+  command->add_option("--group", settings->groups, "Selection from it; several give a sheet of pictures")
       ->type_name("FILE");
   command
-      ->add_option("--pose", settings->poses, "Lays the source on the target by this pose; several beside each other")
+      ->add_option("--pose", settings->poses, "Draws the source aligned with the target by this pose; several side by side")
       ->type_name("FILE");
   command
       ->add_option(
           "--truth", settings->truth,
-          "True target_from_source, a 4x4 matrix: right matches are green, wrong ones red, missed ones faint, and "
-          "both meshes are seen from one side")
+          "True target_from_source, a 4x4 matrix: correct matches are green, incorrect ones red, missed ones faint, "
+          "and both meshes are seen from the same side")
       ->type_name("FILE");
-  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
       ->capture_default_str();
-  command->add_option("--width", settings->width, "Of the picture, in pixels")->capture_default_str();
+  command->add_option("--width", settings->width, "Width of the picture in pixels")->capture_default_str();
   command->add_option("-o,--output", settings->output, "The picture (PNG)")->type_name("FILE")->required();
   command->footer(
       "Examples, with the files of 'corral run model.ply scene.ply --truth truth.txt -o results':\n"

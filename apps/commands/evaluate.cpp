@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral evaluate: the experiments of a study on data sets, into the folder of a run.
+// corral evaluate: experiments on data sets, into the folder of a study.
 #include <algorithm>
 #include <map>
 
@@ -24,7 +24,7 @@ struct Settings {
   bool dense = false, json = false;
 };
 
-/// What is shown of a method in an experiment: the mean of its levels.
+/// What is shown of a grouper in an experiment: the mean of its levels.
 struct Overview {
   int levels = 0, pairs = 0, excluded = 0, empty = 0, failed = 0;
   std::vector<double> sums;  ///< of the headline measures
@@ -60,14 +60,13 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
     table.add(line);
   }
   return table.str() +
-         "Means over the levels of an experiment, at each over its pairs; an empty selection has precision and recall "
-         "0, pairs\n"
-         "without right matches are excluded. success: refined mean error of at most 5 pr. Every level is in "
-         "summary.csv.\n";
+         "Means over the levels of an experiment, at each level over its pairs; an empty selection has precision and\n"
+         "recall 0, pairs without correct matches are excluded. success: share of pairs whose refined mean error is at\n"
+         "most 5 pr. summary.csv has every level.\n";
 }
 
 std::string times_text(const std::vector<TimeRow>& rows) {
-  TextTable table({"matches", "method", "runs", "median ms", "lower quartile", "upper quartile"});
+  TextTable table({"matches", "grouper", "calls", "median ms", "lower quartile", "upper quartile"});
   for (const TimeRow& row : rows)
     table.add({row.level, row.method, std::to_string(row.runs), fixed(row.median_ms, 4),
                fixed(row.lower_quartile_ms, 4), fixed(row.upper_quartile_ms, 4)});
@@ -75,7 +74,7 @@ std::string times_text(const std::vector<TimeRow>& rows) {
 }
 
 int evaluate_time(const Settings& settings, const WorkList& list) {
-  if (settings.jobs) throw UsageError("--jobs: times are taken in one thread, expected none");
+  if (settings.jobs) throw UsageError("--jobs: not for times, which are taken in one thread");
   std::vector<TimeRow> rows;
   {
     const Experiment& experiment = list.experiments.front();
@@ -89,7 +88,7 @@ int evaluate_time(const Settings& settings, const WorkList& list) {
     put("", Json{{"run", settings.study.run}, {"times", json}});
   else
     put("", times_text(rows));
-  say("the run is in " + settings.study.run);
+  say("the study is in " + settings.study.run);
   return kOk;
 }
 
@@ -107,7 +106,7 @@ int evaluate_pairs(const Settings& settings, const WorkList& list) {
     put("", overview_text(outcome.summary));
     const std::string causes = outcome.failed > 0 ? " (records.csv says why)" : "";
     say(std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed" + causes +
-        "; the run is in " + settings.study.run);
+        "; the study is in " + settings.study.run);
   }
   return outcome.failed > 0 ? kPartial : kOk;
 }
@@ -139,7 +138,7 @@ int evaluate(Settings settings) {
     has_times = has_times || experiments.back().sweep == Sweep::TableSize;
   }
   if (has_times && experiments.size() > 1)
-    throw UsageError("times are taken alone, expected the other experiments in a run of their own");
+    throw UsageError("times are taken alone: evaluate the other experiments in another study");
   settings.study.jobs = settings.jobs.value_or(0);
   settings.study.command_line = command_line(settings);
   const WorkList list = make_work_list(std::move(experiments), settings.data);
@@ -150,9 +149,8 @@ std::string footer() {
   std::string names;
   for (const std::string& name : built_in_experiments()) names += (names.empty() ? "" : ", ") + name;
   return "Experiments of the paper: " + names +
-         ".\nAn experiment of your own is a file like theirs (paper/README.md explains the keys). A call that was cut "
-         "short "
-         "goes on\nwhere it was; a pair that fails is recorded with its cause, and the exit status is 4.\n"
+         ".\nAn experiment of your own is such a file (paper/README.md explains the keys). An interrupted call continues\n"
+         "when it is repeated; a pair that fails is recorded with its cause, and the exit status is 4.\n"
          "Examples:\n  corral evaluate noise density --data data -o runs/b3r --jobs 2\n"
          "  corral evaluate my-experiment.toml --data my-scans -o runs/mine --cache ~/.cache/corral\n"
          "  corral evaluate time --data data -o runs/time";
@@ -162,24 +160,24 @@ std::string footer() {
 
 void add_evaluate(CLI::App& app, Action& action) {
   auto* command =
-      app.add_subcommand("evaluate", "Experiments on data sets: every pair, grouper and level, into a run's folder");
+      app.add_subcommand("evaluate", "Experiments on data sets: every pair, grouper and level, into a study folder");
   auto settings = std::make_shared<Settings>();
   command->add_option("experiments", settings->experiments, "Names (below) or TOML files")
       ->type_name("EXPERIMENT")
       ->required();
-  command->add_option("--data", settings->data, "A data set, or a folder with one folder for each (dataset.toml in it)")
+  command->add_option("--data", settings->data, "A data set (a folder with dataset.toml), or a folder of data sets")
       ->type_name("FOLDER")
       ->required();
-  command->add_option("-o,--output", settings->study.run, "Folder of the run")->type_name("FOLDER")->required();
+  command->add_option("-o,--output", settings->study.run, "Folder of the study")->type_name("FOLDER")->required();
   command->add_option("--jobs", settings->jobs,
-                      "Pairs at a time; as many as there are processors unless given. Results do not depend on it");
+                      "Pairs at a time (default: as many as there are processors); results do not depend on it");
   command
       ->add_option("--cache", settings->study.cache,
-                   "Folder for features and matches, which runs may share; within the run's unless given")
+                   "Folder for features and matches, which studies may share (default: in the folder of the study)")
       ->type_name("FOLDER");
   add_set_option(*command, settings->set);
-  command->add_flag("--dense", settings->dense, "Lay the whole surfaces on each other too, in columns of their own");
-  command->add_flag("--json", settings->json, "A short account as JSON instead of the table");
+  command->add_flag("--dense", settings->dense, "Also refine on the whole surfaces, in columns of their own");
+  command->add_flag("--json", settings->json, "A short summary as JSON instead of the table");
   command->footer(footer());
   command->callback([settings, &action] { action = [settings] { return evaluate(*settings); }; });
 }

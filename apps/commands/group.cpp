@@ -42,7 +42,7 @@ int group(const Settings& settings) {
     if (!settings.json || !settings.output.empty())
       put(settings.output, group_text({matches.size(), timed.found.selected, timed.found.scores}));
   } else {
-    say("corral group: " + settings.method + " is too large for " + std::to_string(matches.size()) +
+    say("corral group: " + settings.method + " would use too much memory for " + std::to_string(matches.size()) +
         " matches: " + refusal + " (--memory-limit)");
   }
   if (settings.json) put("", report);

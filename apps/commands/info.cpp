@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral info: what a mesh is, before anything is done with it.
+// corral info: counts, resolution and warnings of a mesh.
 #include <cmath>
 
 #include "apps/commands/commands.h"
@@ -29,12 +29,12 @@ void add_warnings(MeshInfo& info) {
   };
   if (info.faces == 0)
     info.warnings.push_back(
-        "no faces: a point cloud, its normals will be turned towards the origin; 'corral triangulate' gives a view "
-        "faces");
+        "no faces: the normals of a point cloud will point to the origin; 'corral triangulate' gives faces to a range "
+        "scan");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area: left out of components, boundary and edges");
-  warn(info.topology.misoriented_faces, "faces wound against the others: normals will be turned the wrong way there");
+  warn(info.topology.misoriented_faces, "faces wound against the others: normals will have the wrong sign there");
   warn(info.topology.non_manifold_faces, "non-manifold faces");
   if (!info.resolution)
     info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");

@@ -50,7 +50,7 @@ void add_perturb(CLI::App& app, Action& action) {
   command->add_option("-o,--output", settings->output, "The copy (PLY)")->type_name("FILE")->required();
   command->add_option("--truth", settings->truth, "Where the motion goes: copy_from_mesh, a 4x4 matrix")
       ->type_name("FILE");
-  command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise on every coordinate")
+  command->add_option("--noise-pr", settings->noise_pr, "Standard deviation of Gaussian noise on every coordinate")
       ->capture_default_str();
   command->add_option("--seed", settings->seed, "Seed of motion and noise")->capture_default_str();
   command->add_flag("--json", settings->json, "Motion and deviation as JSON on standard output");

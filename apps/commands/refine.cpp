@@ -23,7 +23,7 @@ struct Settings {
   bool json = false;
 };
 
-/// The names of all losses with something between them.
+/// The names of all losses, separated.
 std::string loss_names(const std::string& separator) {
   std::string text;
   for (const char* name : choice_names(RobustLoss())) text += (text.empty() ? "" : separator) + name;
@@ -37,16 +37,16 @@ RobustLoss loss_of(const std::string& text) {
   return static_cast<RobustLoss>(found - names.begin());
 }
 
-/// Scores the selection and judges its pose over the source points of the right matches: where the two surfaces are known
-/// to overlap without seeing them.
+/// Scores the selection and judges its pose over the source points of the correct matches, a part of the overlap that is
+/// known without the meshes.
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const Settings& settings) {
   PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
-  const std::vector<bool> labels = label_inliers(matches, truth.target_from_source, settings.threshold_pr);
+  const std::vector<bool> labels = label_correct(matches, truth.target_from_source, settings.threshold_pr);
   record.score = score_grouping(labels, record.found.selected);
-  Indices right;
+  Indices correct;
   for (int row = 0; row < matches.size(); ++row)
-    if (labels[static_cast<std::size_t>(row)]) right.push_back(row);
-  truth.overlap = matches.source_points(right, Eigen::all);
+    if (labels[static_cast<std::size_t>(row)]) correct.push_back(row);
+  truth.overlap = matches.source_points(correct, Eigen::all);
   judge_pose(record, truth, matches.resolution);
 }
 
@@ -93,18 +93,18 @@ int refine(Settings settings) {
 }  // namespace
 
 void add_refine(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("refine", "The rigid pose behind a selection, refined");
+  auto* command = app.add_subcommand("refine", "The refined rigid pose of a selection");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
+  command->add_option("group", settings->group, "Selection from it")->type_name("FILE")->required();
   command
       ->add_option("--truth", settings->truth,
                    "True target_from_source, a 4x4 matrix: adds the errors of the pose and of its start")
       ->type_name("FILE");
-  command->add_option("--loss", settings->loss, "What a residual costs: " + loss_names(", "))->capture_default_str();
+  command->add_option("--loss", settings->loss, "Robust loss: " + loss_names(", "))->capture_default_str();
   command
       ->add_option("--loss-scale-pr", settings->options.loss_scale_pr,
-                   "Residual at which a match begins to lose its influence (tukey: has none left; none: no use for it)")
+                   "Residual at which a match begins to lose its influence (tukey: has none left; none: not used)")
       ->capture_default_str();
   command
       ->add_option("--start", settings->start,
@@ -112,14 +112,14 @@ void add_refine(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command
       ->add_option("--threshold-pr", settings->threshold_pr,
-                   "Residual of a right match; RMSE is taken over the source points of the right matches")
+                   "Largest residual of a correct match; RMSE is over the source points of the correct matches")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Where the pose goes (default: standard output)")
       ->type_name("FILE");
   command->add_flag("--json", settings->json,
                     "Pose, covariance, condition, costs, errors and status as JSON on standard output");
   command->footer(
-      "Without a pose (fewer than 3 rows, or all on one line) there is no pose file and the status says why.\n"
+      "If there is no pose (fewer than 3 rows, or all on one line), no file is written and the status says why.\n"
       "Examples:\n  corral refine matches.csv group.csv -o pose.txt\n"
       "  corral refine matches.csv group.csv --truth truth.txt --json\n"
       "  corral refine matches.csv group.csv --loss geman-mcclure --loss-scale-pr 3 --start method_pose.txt");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral report: the figures, tables and pictures of some runs.
+// corral report: the figures, tables and pictures of studies.
 #include "apps/runtime/output.h"
 
 #include <filesystem>
@@ -25,7 +25,7 @@ struct Settings {
   int pairs_in_3d = PageOptions().pairs_in_3d;
 };
 
-/// For every experiment with two methods or more on common pairs, their average ranks by F1 and by success.
+/// For every experiment with two or more groupers on common pairs, their average ranks by F1 and by success.
 std::vector<RankDiagram> rank_diagrams(const std::vector<StudyResults>& studies) {
   std::vector<RankDiagram> diagrams;
   for (const StudyResults& study : studies)
@@ -41,7 +41,7 @@ std::vector<RankDiagram> rank_diagrams(const std::vector<StudyResults>& studies)
   return diagrams;
 }
 
-/// Data, tables and scripts; the names of the scripts.
+/// Writes data, tables and scripts. Returns the names of the scripts.
 std::vector<std::string> write_figures(const StudyFigures& figures, const std::vector<RankDiagram>& ranks,
                                        const std::string& folder) {
   std::vector<FileContent> files;
@@ -61,7 +61,7 @@ std::vector<std::string> write_figures(const StudyFigures& figures, const std::v
   return names;
 }
 
-/// False if one of the pairs cannot be drawn, and says why.
+/// Returns false and prints the reason if one of the pairs cannot be drawn.
 bool write_pictures(const GalleryPair& pair, const std::string& folder) {
   try {
     std::vector<FileContent> pictures = draw_gallery_pair(pair);
@@ -74,8 +74,8 @@ bool write_pictures(const GalleryPair& pair, const std::string& folder) {
   }
 }
 
-/// The findings, and everything on one page.
-void write_page(const std::vector<RunFolder>& runs, const std::vector<StudyResults>& studies,
+/// Writes the findings, and everything on one page.
+void write_page(const std::vector<StudyFolder>& runs, const std::vector<StudyResults>& studies,
                 const Settings& settings) {
   const ClaimBook book = built_in_claims();
   PageOptions options;
@@ -87,7 +87,7 @@ void write_page(const std::vector<RunFolder>& runs, const std::vector<StudyResul
 }
 
 int report(const Settings& settings) {
-  const std::vector<RunFolder> runs = read_runs(settings.runs);
+  const std::vector<StudyFolder> runs = read_runs(settings.runs);
   const std::vector<StudyResults> studies = results_of(runs);
   const StudyFigures figures = study_figures(studies);
   const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
@@ -113,27 +113,26 @@ int report(const Settings& settings) {
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("report", "Figures, tables and pictures of what 'corral evaluate' found");
+  auto* command = app.add_subcommand("report", "Figures, tables, pictures and a page of the results of 'corral evaluate'");
   auto settings = std::make_shared<Settings>();
-  command->add_option("runs", settings->runs, "Folders that 'corral evaluate' made")->type_name("RUN")->required();
+  command->add_option("studies", settings->runs, "Folders of 'corral evaluate'")->type_name("STUDY")->required();
   command->add_option("-o,--output", settings->output, "Folder for the report")->type_name("FOLDER")->required();
   command
       ->add_option(
           "--pairs", settings->pairs,
-          "Pairs to draw, 'pair' or 'dataset/pair', with commas between them (default: of each data set the one "
-          "whose share of right matches is in the middle)")
+          "Pairs to draw, 'pair' or 'dataset/pair', separated by commas (default: the pair of each data set with the "
+          "median share of correct matches)")
       ->type_name("NAMES")
       ->delimiter(',');
-  command->add_option("--pairs-in-3d", settings->pairs_in_3d, "Pairs whose surfaces and matches the page carries")
+  command->add_option("--pairs-in-3d", settings->pairs_in_3d, "Number of pairs whose surfaces and matches are on the page")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command->footer(
       "index.html is the whole report on one page that opens from disk; claims.txt says which findings hold.\n"
-      "Every figure is <experiment>-<dataset>-<measure>.pdf and .svg, with its numbers (.csv), a table (.tex) and the "
-      "script "
-      "that drew\nit (.gp: change what you like and run gnuplot on it). Pictures of pairs are in pairs/.\n"
-      "Examples:\n  corral report build/run -o report\n  corral report run-b3r run-time --pairs b3r/bunny-0.25 -o "
-      "report");
+      "Every figure is <experiment>-<dataset>-<measure>.pdf and .svg, with its numbers (.csv), a table (.tex) and the\n"
+      "script that drew it (.gp: edit it and run gnuplot on it). Pictures of pairs are in pairs/.\n"
+      "Examples:\n  corral report runs/all -o report\n"
+      "  corral report runs/b3r runs/time --pairs b3r/bunny-0.25 -o report");
   command->callback([settings, &action] { action = [settings] { return report(*settings); }; });
 }
 

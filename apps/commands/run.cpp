@@ -42,7 +42,7 @@ std::vector<std::string> method_names(const std::string& text) {
   for (std::string name; std::getline(stream, name, ',');) {
     if (name.empty()) throw UsageError("--methods " + text + ": expected all, or names such as ss,gc");
     if (std::find(names.begin(), names.end(), name) != names.end())
-      throw UsageError("--methods: " + name + " stands twice");
+      throw UsageError("--methods: " + name + " occurs twice");
     names.push_back(name);
   }
   return names;
@@ -54,11 +54,11 @@ struct PairRun {
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
-  std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the floor
-  std::vector<bool> labels;                  ///< with a truth: which matches are right
+  std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the baseline
+  std::vector<bool> labels;                  ///< with a truth: which matches are correct
   std::optional<FrameRepeatability> frames;  ///< with a truth
-  PairCounts counts;                         ///< with an explanation
-  std::vector<Explanation> explanations;     ///< where asked for: of the pair, then of each method
+  PairCounts counts;                         ///< with --explain
+  std::vector<Explanation> explanations;     ///< with --explain: of the pair, then of each grouper
 
   std::optional<int> true_matches() const {
     if (!truth) return std::nullopt;
@@ -105,7 +105,7 @@ Json to_json(const PairRun& run, const Settings& settings) {
   return json;
 }
 
-/// Every intermediate file of the run, all or none; what an earlier run left of other methods goes.
+/// Every intermediate file of the run, all or none; files that an earlier call left of other groupers are removed.
 void write_folder(const PairRun& run, const Settings& settings) {
   const std::string folder = settings.output + "/";
   std::vector<FileContent> files{{folder + "matches.csv", matches_text(run.pair.matches)},
@@ -146,7 +146,7 @@ PairRun evaluate(const Settings& settings) {
   for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
   if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
   const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
-  if (!settings.output.empty()) {  // better now than after all the work
+  if (!settings.output.empty()) {  // before the work, not after it
     make_folder(settings.output);
     check_writable(settings.output + "/run.json");
   }
@@ -156,7 +156,7 @@ PairRun evaluate(const Settings& settings) {
     progress.begin("overlap");
     run.truth =
         pair_truth(source, target, run.truth->target_from_source, run.pair.report.resolution, settings.threshold_pr);
-    run.labels = label_inliers(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
+    run.labels = label_correct(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
     run.frames = frame_repeatability(run.pair.matches, run.truth->target_from_source, run.labels);
   }
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -178,12 +178,12 @@ PairRun evaluate(const Settings& settings) {
 std::string heading(const PairRun& run, const Settings& settings) {
   std::string text =
       settings.source + " -> " + settings.target + ": " + std::to_string(run.pair.matches.size()) + " matches";
-  if (const auto right = run.true_matches())
-    text += ", " + std::to_string(*right) + " right within " + fixed(settings.threshold_pr, 1) + " pr; overlap " +
+  if (const auto correct = run.true_matches())
+    text += ", " + std::to_string(*correct) + " correct within " + fixed(settings.threshold_pr, 1) + " pr; overlap " +
             std::to_string(run.truth->overlap.rows()) + " of " + std::to_string(run.pair.report.source.points) +
             " points";
   if (run.frames && run.frames->compared > 0)
-    text += "; frames of " + fixed(100 * *run.frames->share(), 1) + " % of the right matches agree within 10 degrees";
+    text += "; frames of " + fixed(100 * *run.frames->share(), 1) + " % of the correct matches agree within 10 degrees";
   return text + "\n";
 }
 
@@ -225,7 +225,7 @@ int run_pair(Settings settings) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every method");
+  auto* command = app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every grouper");
   auto settings = std::make_shared<Settings>();
   command->add_option("source", settings->source, "Source mesh (a model)")->type_name("FILE")->required();
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
@@ -234,28 +234,26 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--methods", settings->methods, "all, or names between commas: " + names_of(groupers(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
-  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
       ->capture_default_str();
-  command->add_option("--repeat", settings->repeat, "Timed calls of each method; the median is reported")
+  command->add_option("--repeat", settings->repeat, "Timed calls of each grouper; the median is reported")
       ->capture_default_str();
   command->add_flag("--dense", settings->dense,
-                    "Lay the whole surfaces on each other from every pose, reported in a table of its own");
+                    "Also refine every pose on the whole surfaces, reported in a table of its own");
   command->add_flag(
       "--explain", settings->explain,
-      "Say in words where the pair was won or lost, before the grouping and by each method; needs --truth");
+      "Explain in words where the pair was registered or lost, before the grouping and by each grouper; needs --truth");
   add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);
   add_set_option(*command, settings->set);
   command->footer(
-      "With a truth, the row 'oracle' (all right matches) shows what a perfect grouper would do for the pair, and "
-      "'floor'\n"
-      "(all matches) what none at all would. A pose registers the pair if its mean error over the overlap is at most 5 "
-      "pr;\n"
-      "the outcome is 'found' if the fit to the selection and the refined pose do, 'saved' if only the refined pose "
-      "does,\n"
-      "'spoiled' if only the fit does, else 'lost'. ADD is the mean error over the whole source in its diameters.\n"
+      "With a truth, the row 'oracle' (all correct matches) shows the result of a perfect grouper, and 'baseline' (all\n"
+      "matches) that of no grouper. A pose registers the pair if its mean error over the overlap is at most 5 pr; the\n"
+      "outcome is 'found' if both the fit to the selection and the refined pose do, 'saved' if only the refined pose\n"
+      "does, 'spoiled' if only the fit does, else 'lost'. ADD is the mean error over the whole source, as a share of\n"
+      "its diameter.\n"
       "Examples:\n  corral run model.ply scene.ply --truth truth.txt --explain\n"
       "  corral run model.ply scene.ply --methods ransac,gc --set ransac.iterations=50000 -o results --json");
   command->callback([settings, &action] { action = [settings] { return run_pair(*settings); }; });

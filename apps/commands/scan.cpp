@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral scan: what a range scanner would see of a mesh, and from where.
+// corral scan: what a range scanner would see of a mesh, and its pose.
 #include <cmath>
 #include <optional>
 
@@ -41,7 +41,7 @@ RangeSensor sensor_of(const Settings& settings, const Mesh& mesh) {
   const auto number = parse_int(settings.view.substr(0, slash));
   const auto count = parse_int(settings.view.substr(std::min(slash + 1, settings.view.size())));
   if (!number || !count || *number < 1 || *number > *count || *count > 1000000)
-    throw UsageError("--view: found '" + settings.view + "', expected I/N with I one of 1 .. N");
+    throw UsageError("--view: found '" + settings.view + "', expected I/N with I in 1 .. N");
   return ring_sensor(mesh, static_cast<int>(*number) - 1, static_cast<int>(*count));
 }
 
@@ -59,7 +59,7 @@ int scan(const Settings& settings) {
   check(settings);
   Mesh mesh = read_surface(settings.mesh);
   if (mesh.triangles.rows() == 0)
-    throw IoError(settings.mesh, "", "has no faces, expected a surface (of one view, 'corral triangulate' makes them)");
+    throw IoError(settings.mesh, "", "has no faces, expected a surface ('corral triangulate' gives faces to a single view)");
   const RangeSensor sensor = sensor_of(settings, mesh);
   const ParallelFor parallel = workers(settings.threads);
   RangeScanOptions options = settings.options;
@@ -109,13 +109,13 @@ void add_scan(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command
       ->add_option("--spacing-pr", settings->spacing_pr,
-                   "Resolution of the view in pr of the mesh, up to a few hundredths")
+                   "Resolution of the view in pr of the mesh, to within a few hundredths")
       ->capture_default_str();
   command->add_option("--noise-pr", settings->noise_pr, "Deviation of normal noise along each ray, pr of the mesh")
       ->capture_default_str();
   command
       ->add_option("--grazing-deg", settings->options.grazing_deg,
-                   "What is met flatter than this, from its normal, is not seen")
+                   "A surface whose normal is further from the ray than this is not seen")
       ->capture_default_str();
   command->add_option("--seed", settings->options.seed, "Seed of the noise")->capture_default_str();
   add_threads(*command, settings->threads);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral score: precision and recall of a selection, and where the pose behind it leads.
+// corral score: precision and recall of a selection, and the error of the pose that follows from it.
 #include <cmath>
 
 #include "apps/commands/command_options.h"
@@ -28,14 +28,14 @@ MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group
                        matches.resolution, settings.threshold_pr);
   MethodRecord record;
   record.score =
-      score_grouping(label_inliers(matches, truth.target_from_source, settings.threshold_pr), group.selected);
+      score_grouping(label_correct(matches, truth.target_from_source, settings.threshold_pr), group.selected);
   record.pose.initial = refine_rigid(matches, group.selected).initial;
   judge_pose(record, truth, matches.resolution);
   return record;
 }
 
 const std::vector<TableColumn> kScoreColumns = {
-    {"matches", "matches"},        {"selected", "selected"}, {"correct", "correct"}, {"true matches", "true_matches"},
+    {"matches", "matches"},        {"selected", "selected"}, {"correct", "correct"}, {"all correct", "true_matches"},
     {"precision", "precision", 4}, {"recall", "recall", 4},  {"F1", "f1", 4}};
 const std::vector<TableColumn> kFitColumns = {{"fit: rot err deg", "initial_rotation_error_deg", 4},
                                               {"transl err pr", "initial_translation_error_pr", 4},
@@ -65,18 +65,18 @@ void add_score(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("score", "Precision, recall and pose error of a selection against a true pose");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("group", settings->group, "Selection made of it")->type_name("FILE")->required();
+  command->add_option("group", settings->group, "Selection from it")->type_name("FILE")->required();
   command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix")
       ->type_name("FILE")
       ->required();
-  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is right")
+  command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
       ->capture_default_str();
-  command->add_option("--source", settings->source, "Source mesh: adds RMSE over the overlap and ADD, with --target")
+  command->add_option("--source", settings->source, "Source mesh: with --target adds RMSE over the overlap and ADD")
       ->type_name("FILE");
   command->add_option("--target", settings->target, "Target mesh")->type_name("FILE");
   command->add_flag("--json", settings->json, "As JSON; null where a value is undefined");
   command->footer(
-      "The pose is the least-squares fit to the selection; 'corral refine --truth' judges the refined one.\n"
+      "The pose is the least-squares fit to the selection; 'corral refine --truth' evaluates the refined one.\n"
       "Examples:\n  corral score matches.csv group.csv --truth truth.txt --threshold-pr 4\n"
       "  corral score matches.csv group.csv --truth truth.txt --source model.ply --target scene.ply --json");
   command->callback([settings, &action] { action = [settings] { return score(*settings); }; });

@@ -75,7 +75,7 @@ void add_listing(CLI::App& app, Action& action, const std::string& name, const L
   auto* command = app.add_subcommand(name, "The " + name + ", their options and sources");
   auto settings = std::make_shared<Settings>();
   auto* json = command->add_flag("--json", settings->json, "As a JSON array");
-  command->add_flag("--markdown", settings->markdown, "As a table for the documents")->excludes(json);
+  command->add_flag("--markdown", settings->markdown, "As the table of the room's README.md")->excludes(json);
   command->footer("Example:\n  corral " + name + " --json");
   command->callback([settings, listing, &action] {
     action = [settings, listing]() -> int {
@@ -91,7 +91,7 @@ void add_listing(CLI::App& app, Action& action, const std::string& name, const L
 }  // namespace
 
 void add_tables(CLI::App& app, Action& action) {
-  add_listing<Grouper>(app, action, "groupers", {groupers(), "method", "method", "keeps"});
+  add_listing<Grouper>(app, action, "groupers", {groupers(), "method", "grouper", "keeps"});
   add_listing<Detector>(app, action, "detectors", {detectors(), "detector", "detector", "finds"});
   add_listing<Descriptor>(app, action, "descriptors", {descriptors(), "descriptor", "descriptor", "holds"});
 }

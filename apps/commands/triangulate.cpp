@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral triangulate: a range scan that came as points gets faces.
+// corral triangulate: faces for a range scan that is a list of points.
 #include <cmath>
 #include <optional>
 
@@ -66,7 +66,7 @@ int triangulate(const Settings& settings) {
       " grazing ones dropped, " + std::to_string(view.hidden) + " points hidden");
   const double dropped = static_cast<double>(view.dropped_long) + view.dropped_grazing;
   if (dropped > kManyDropped * (dropped + static_cast<double>(view.triangles.rows())))
-    say("hint: so many dropped triangles mean a sensor elsewhere (--sensor, --direction), or more than one view");
+    say("hint: so many dropped triangles suggest another sensor position (--sensor, --direction), or several views");
   if (settings.json) put("", to_json(input, view, resolution, options));
   return kOk;
 }
@@ -76,7 +76,7 @@ int triangulate(const Settings& settings) {
 void add_triangulate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("triangulate", "Faces for a range scan that is a point cloud seen by one sensor");
   auto settings = std::make_shared<Settings>();
-  command->add_option("view", settings->view, "Points of one view; faces it may have are replaced")
+  command->add_option("view", settings->view, "Points of one view; existing faces are replaced")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", settings->output, "The same points with faces (PLY)")

@@ -26,7 +26,7 @@ void measure_matches(const SweptPair& pair, double resolution, PairMeasures& mea
   settings.threads = 1;  // the pairs already run in parallel
   const CorrespondenceSet matches = match_pair(pair.source.mesh, pair.target.mesh, settings).matches;
   if (matches.size() == 0) return;
-  const std::vector<bool> labels = label_inliers(matches, *pair.truth, kCorrectMatch);
+  const std::vector<bool> labels = label_correct(matches, *pair.truth, kCorrectMatch);
   measures.inlier_ratio =
       100 * static_cast<double>(std::count(labels.begin(), labels.end(), true)) / static_cast<double>(labels.size());
   if (const auto share = frame_repeatability(matches, *pair.truth, labels).share())

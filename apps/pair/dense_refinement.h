@@ -10,8 +10,8 @@
 
 namespace corral {
 
-/// Lays the source mesh on the target mesh from the poses of the groupers. What the target needs for it is made once. The
-/// meshes must outlive this.
+/// Dense refinement of the poses of the groupers on the two meshes. The index of the target is built once. The meshes must
+/// outlive this.
 class DenseRefinement {
  public:
   /// `resolution`: mesh units per pr.

@@ -15,7 +15,7 @@ namespace {
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
   if (truth)
     record.score =
-        score_grouping(label_inliers(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
+        score_grouping(label_correct(matches, truth->target_from_source, truth->threshold_pr), record.found.selected);
   record.pose = refine_rigid(matches, record.found.selected);
   if (truth) judge_pose(record, *truth, matches.resolution);
 }
@@ -83,10 +83,10 @@ std::string too_large(const ConfiguredGrouper& grouper, int matches, double memo
 }
 
 std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth) {
-  const std::vector<bool> labels = label_inliers(matches, truth.target_from_source, truth.threshold_pr);
+  const std::vector<bool> labels = label_correct(matches, truth.target_from_source, truth.threshold_pr);
   std::vector<MethodRecord> bounds(2);
   bounds[0].method = "oracle";
-  bounds[1].method = "floor";
+  bounds[1].method = "baseline";
   for (int row = 0; row < matches.size(); ++row) {
     if (labels[static_cast<std::size_t>(row)]) bounds[0].found.selected.push_back(row);
     bounds[1].found.selected.push_back(row);

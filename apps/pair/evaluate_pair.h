@@ -15,23 +15,23 @@
 
 namespace corral {
 
-/// What is known of a pair beside its matches.
+/// The ground truth of a pair.
 struct PairTruth {
   RigidTransform target_from_source;
   Points overlap;           ///< source points over which a pose is judged; may be empty
-  double threshold_pr = 4;  ///< of a right match
-  Points vertices{};        ///< of the source, all; empty where it is not seen
+  double threshold_pr = 4;  ///< largest residual of a correct match
+  Points vertices{};        ///< all source vertices; empty where the mesh is not available
   double diameter = 0;      ///< of these, mesh units
 };
 /// The same with the overlap of the two surfaces and the extent of the source. `resolution`: mesh units per pr.
 PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
                      double resolution, double threshold_pr);
 
-/// Those of some source points whose true image has a target vertex within 4 pr.
+/// The source points whose true image has a target vertex within 4 pr.
 Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
                          double resolution);
 
-/// A pose against the truth; what there is no point to take over is absent.
+/// The errors of a pose; those without points to average over are absent.
 struct PoseErrors {
   double rotation_error_deg = 0, translation_error_pr = 0;
   std::optional<PointError> points;  ///< over the overlap
@@ -40,16 +40,16 @@ struct PoseErrors {
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
 
 constexpr double kSuccessPr = 5;          ///< most mean error over the overlap of a pose that registers a pair
-constexpr double kSuccessAddShare = 0.1;  ///< a pose recognises an object if its ADD is below
+constexpr double kSuccessAddShare = 0.1;  ///< a pose recognises an object if its ADD is below this
 
-/// Whether a pose registers the pair: it is there, and its PointError::mean_pr is at most kSuccessPr.
+/// Whether a pose registers the pair: it exists, and its PointError::mean_pr is at most kSuccessPr.
 bool is_registered(const std::optional<PoseErrors>& errors);
 
-/// One method on one pair. What could not be had is absent.
+/// One grouper on one pair. What could not be computed is absent.
 struct MethodRecord {
   std::string method;
-  std::string failure;        ///< why the method gave no answer; empty if it did
-  bool is_too_large = false;  ///< it was not asked, since it would need more memory than it may
+  std::string failure;        ///< why the grouper gave no answer; empty if it did
+  bool is_too_large = false;  ///< it was not called, because it would need more memory than allowed
   GroupingResult found;
   std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth
@@ -59,33 +59,32 @@ struct MethodRecord {
   std::optional<RefinedSurface> dense;       ///< from the refined pose, where it was asked for
   std::optional<PoseErrors> dense_errors;    ///< of its pose, with a truth
 
-  /// Who is to thank for the alignment, and who to blame. "found": the fit to the selection registers the pair, and so does
-  /// the refined pose. "saved": only the refined pose does. "spoiled": only the fit does. "lost": neither does. Empty
-  /// without a truth or an answer.
+  /// "found": both the fit to the selection and the refined pose register the pair. "saved": only the refined pose does.
+  /// "spoiled": only the fit does. "lost": neither does. Empty without a truth or an answer.
   std::string outcome() const;
 
   MethodStatus status() const;
 };
 
-/// The median wall time of `repeat` calls (at least 1) and the answer of the first.
+/// The median wall time of `repeat` calls (at least 1) and the result of the first.
 struct TimedGrouping {
   GroupingResult found;
   double time_ms = 0;
 };
 TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet& matches, int repeat);
 
-/// Why a method may not be asked for so many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
+/// Why a grouper may not be called with this many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
 std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit);
 
 /// Fills in the errors of the refined pose and of its start.
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution);
 
-/// What a perfect grouper and none at all would leave to the refinement: "oracle" selects all right matches, "floor" all
-/// matches. Scored, refined and judged as the methods are, without a time.
+/// The selections of a perfect grouper and of none: "oracle" selects all correct matches, "baseline" all matches. Scored,
+/// refined and judged as those of the groupers, without a time.
 std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth);
 
-/// Groups, scores, refines and judges; a method that refuses the table, or needs more bytes than the limit, is a record
-/// of that.
+/// Groups, scores, refines and judges. If the grouper refuses the table, or needs more bytes than the limit, the record says
+/// so.
 MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& grouper,
                              const CorrespondenceSet& matches, const std::optional<PairTruth>& truth, int repeat,
                              double memory_limit = std::numeric_limits<double>::infinity());

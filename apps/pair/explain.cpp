@@ -8,23 +8,23 @@ namespace corral {
 namespace {
 
 constexpr int kFewKeypoints = 20;
-constexpr int kLeastRows = 3;  ///< of a pose
+constexpr int kLeastRows = 3;  ///< that determine a pose
 constexpr double kLeastPrecision = 0.5;
 
 std::string pr(double value) { return fixed(value, value < 10 ? 2 : 1) + " pr"; }
 
-/// "ends at 0.08 pr" or why it ends nowhere.
+/// "ends at 0.08 pr", or why there is no pose.
 std::string end_of(const MethodRecord& record) {
   if (!record.pose.target_from_source) return std::string("gives no pose (") + to_text(record.pose.status) + ")";
-  if (!record.errors || !record.errors->points) return "gives a pose, with no overlap to judge it over";
+  if (!record.errors || !record.errors->points) return "gives a pose, but there is no overlap to evaluate it on";
   return "ends at " + pr(record.errors->points->mean_pr);
 }
 
-/// "kept 3 of the 30 right matches among 12 rows (precision 0.250, recall 0.100); their fit is at 7.10 pr"
+/// "kept 3 of the 30 correct matches among 12 rows (precision 0.250, recall 0.100); their fit is at 7.10 pr"
 std::string start_of(const MethodRecord& record) {
   const GroupingScore& score = *record.score;
   std::string text = "kept " + std::to_string(score.correct) + " of the " + std::to_string(score.true_matches) +
-                     " right matches among " + std::to_string(score.selected) + " rows";
+                     " correct matches among " + std::to_string(score.selected) + " rows";
   if (score.precision && score.recall)
     text += " (precision " + fixed(score.precision, 3) + ", recall " + fixed(score.recall, 3) + ")";
   if (record.initial_errors && record.initial_errors->points)
@@ -34,9 +34,9 @@ std::string start_of(const MethodRecord& record) {
 
 std::string dense_of(const MethodRecord& record) {
   if (!record.dense_errors || !record.dense_errors->points) return "";
-  std::string text = "; laid on the whole surface it is at " + pr(record.dense_errors->points->mean_pr);
+  std::string text = "; the dense refinement ends at " + pr(record.dense_errors->points->mean_pr);
   if (!is_registered(record.dense_errors)) return text + ", lost";
-  return is_registered(record.errors) ? text : text + ", which registers the pair after all";
+  return is_registered(record.errors) ? text : text + ", which registers the pair";
 }
 
 Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
@@ -44,7 +44,7 @@ Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
   return counts.keypoints_in_overlap < kFewKeypoints ? Cause::TooFewKeypoints : Cause::TooFewTrueMatches;
 }
 
-/// Of a method that does not register the pair though the oracle does, by a fit that does not either.
+/// For a grouper that does not register the pair although the oracle does, and whose fit does not either.
 Cause cause_of_loss(const MethodRecord& record) {
   if (record.score->correct < kLeastRows) return Cause::GrouperMissed;
   if (record.pose.status == RefineStatus::DegenerateGeometry) return Cause::DegenerateSelection;
@@ -64,7 +64,7 @@ Cause cause_of_method(const MethodRecord& record, Cause pair) {
 
 std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodRecord& oracle) {
   const std::string matches = std::to_string(counts.true_matches) + " of " + std::to_string(counts.keypoints) +
-                              " matches are right within " + fixed(counts.threshold_pr, 1) + " pr";
+                              " matches are correct within " + fixed(counts.threshold_pr, 1) + " pr";
   const std::string keypoints = std::to_string(counts.keypoints_in_overlap) + " of " +
                                 std::to_string(counts.keypoints) + " matched source keypoints lie in the overlap";
   const std::string limit =
@@ -74,7 +74,7 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
            keypoints + " (" + limit + ")";
   if (cause == Cause::TooFewKeypoints)
     return "lost before the grouping: " + keypoints + ", and of fewer than " + std::to_string(kFewKeypoints) +
-           " not even " + std::to_string(kLeastRows) + " right matches can be expected (at 15 % right); " + matches;
+           " not even " + std::to_string(kLeastRows) + " correct matches can be expected (at 15 %); " + matches;
   if (counts.true_matches < kLeastRows)
     return "lost before the grouping: " + matches + ", and a pose needs " + std::to_string(kLeastRows) + "; " +
            keypoints;
@@ -82,11 +82,11 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
          keypoints + " (" + limit + ")";
 }
 
-/// What a grouper did to a pair that it had to register.
+/// Why the selection does not register a pair that could be registered.
 std::string fault_of(const GroupingScore& score) {
-  if (score.correct < kLeastRows) return "the grouper missed them";
-  return *score.precision < kLeastPrecision ? "the grouper let too many wrong ones in"
-                                            : "the grouper kept right ones that do not fix the pose";
+  if (score.correct < kLeastRows) return "too few correct matches kept";
+  return *score.precision < kLeastPrecision ? "too many incorrect matches kept"
+                                            : "the correct matches kept do not determine the pose";
 }
 
 std::string text_of_method(Cause cause, const MethodRecord& record) {
@@ -94,9 +94,10 @@ std::string text_of_method(Cause cause, const MethodRecord& record) {
     case Cause::NoAnswer:
       return "gave no answer: " + to_text(record.status());
     case Cause::Found:
-      return "the grouper found it: " + start_of(record) + ", the refinement " + end_of(record);
+      return "registered by the fit: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::Saved:
-      return "the optimiser saved it: " + start_of(record) + ", above " + to_text(kSuccessPr) + " pr, the refinement " +
+      return "registered by the refinement: " + start_of(record) + ", above " + to_text(kSuccessPr) +
+             " pr, the refinement " +
              end_of(record);
     case Cause::TooFewKeypoints:
     case Cause::TooFewTrueMatches:
@@ -105,16 +106,16 @@ std::string text_of_method(Cause cause, const MethodRecord& record) {
     case Cause::GrouperMissed:
       return fault_of(*record.score) + ": " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::DegenerateSelection:
-      return "the selection fixes no pose: " + start_of(record) + ", on one line or in one place";
+      return "the selection determines no pose: " + start_of(record) + ", all on one line or at one point";
     case Cause::Diverged:
-      return "the optimiser diverged: " + start_of(record) + ", the refinement " + end_of(record);
+      return "the refinement diverged: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::NotConverged:
-      return "the optimiser did not come to rest within " + std::to_string(record.pose.iterations) +
+      return "the refinement did not converge within " + std::to_string(record.pose.iterations) +
              " iterations: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::Spoiled:
       break;
   }
-  return "the optimiser spoiled it: " + start_of(record) + ", the refinement " + end_of(record);
+  return "lost by the refinement: " + start_of(record) + ", the refinement " + end_of(record);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ SurfaceFeatures describe(const Mesh& mesh, const Points& normals, double resolut
   return features;
 }
 
-/// One pair on its way from meshes to matches.
+/// The stages of one pair from meshes to matches.
 class Pipeline {
  public:
   Pipeline(const MatchSettings& settings, const StageObserver& observer, MatchReport& report)
@@ -152,7 +152,7 @@ void add_hints(const MatchReport& report, const MatchSettings& settings, std::ve
   hint(report.source, "source");
   hint(report.target, "target");
   if (report.matches == 0 && report.source.descriptors > 0 && report.target.descriptors > 0)
-    hints.push_back("no match is mutual: the surfaces may share too little, or leave out --mutual");
+    hints.push_back("no match is mutual: the surfaces may overlap too little; try without --mutual");
 }
 
 }  // namespace

@@ -21,13 +21,13 @@ struct SurfaceReport {
   int candidates = 0;                ///< what the keypoints were selected from
   int keypoints = 0;                 ///< those that the detector found
   int dropped_small_support = 0, dropped_no_frame = 0, dropped_no_histogram = 0;
-  int descriptors = 0;  ///< keypoints less those dropped
+  int descriptors = 0;  ///< keypoints minus those dropped
 };
 
 struct StageCost {
   std::string stage;
   double time_ms = 0;         ///< wall time
-  double peak_memory_mb = 0;  ///< the most that the process had held by the end of the stage
+  double peak_memory_mb = 0;  ///< peak memory of the process up to the end of the stage
 };
 
 /// A length that the matching used.
@@ -42,7 +42,7 @@ struct MatchReport {
   std::vector<UsedLength> lengths;  ///< every option in pr of the detector and of the descriptor
   int matches = 0;
   std::vector<StageCost> stages;
-  std::vector<std::string> hints;  ///< what to do about a count that is zero
+  std::vector<std::string> hints;  ///< advice on counts that are zero
 };
 
 struct MatchedPair {
@@ -50,11 +50,11 @@ struct MatchedPair {
   MatchReport report;
 };
 
-/// Called with what begins; may be empty.
+/// Called with the name of a stage when it begins; may be empty.
 using StageObserver = std::function<void(const std::string& stage)>;
 int match_stages(const MatchSettings& settings);  ///< how many stages begin
 
-/// One of the two surfaces as the matching wants it. Depends on the mesh, the pr and the settings alone.
+/// One of the two surfaces, described for matching. Depends on the mesh, the pr and the settings alone.
 struct SurfaceFeatures {
   int candidates = 0, keypoints = 0;  ///< as in SurfaceReport
   Descriptors descriptors;

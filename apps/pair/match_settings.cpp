@@ -11,10 +11,10 @@
 namespace corral {
 namespace {
 
-/// Resolutions that differ by more have no meaningful mean: metres and millimetres, most likely.
+/// Resolutions that differ by a larger factor have no meaningful mean: probably metres and millimetres.
 constexpr double kLargestRatio = 20;
 
-/// More than any machine needs; a typing error must not bring it down.
+/// More than any machine needs; guards against typing errors.
 constexpr int kMostThreads = 256;
 
 constexpr char kShot[] = "shot";
@@ -43,7 +43,7 @@ void MatchSettings::validate() const {
     throw InvalidInput("match", "--resolution", "'" + resolution + "'",
                        "mean|source|target or a length above zero in mesh units");
   if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
-    throw InvalidInput("match", "--sensor", "not a place", "three finite coordinates x,y,z");
+    throw InvalidInput("match", "--sensor", "not a point", "three finite coordinates x,y,z");
   if (threads < 0 || threads > kMostThreads)
     throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
   if (!look_up(detectors(), detector))

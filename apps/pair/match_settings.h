@@ -30,7 +30,7 @@ struct MatchSettings {
   std::vector<double> sensor = {0, 0, 0};  ///< x, y, z in mesh units
   MatchingOptions matching;
   int threads = 0;       ///< 0: as many as the machine has. Results do not depend on it
-  bool inspect = false;  ///< look at the topology of the meshes too
+  bool inspect = false;  ///< inspect the topology of the meshes too
 
   /// What is a choice or a flag; command line, experiment files and records are made from it.
   template <class Self, class Visitor>

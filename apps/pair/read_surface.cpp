@@ -19,8 +19,8 @@ Mesh read_surface(const std::string& path) {
   if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface");
   if (!(diagonal > 0))
     throw IoError(path, "",
-                  "all its " + std::to_string(mesh.vertices.rows()) + " vertices are in one place, expected " +
-                      "at least two places (the resolution would be zero)");
+                  "all its " + std::to_string(mesh.vertices.rows()) + " vertices coincide, expected " +
+                      "at least two distinct ones (the resolution would be zero)");
   return mesh;
 }
 

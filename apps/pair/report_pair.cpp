@@ -9,7 +9,7 @@
 namespace corral {
 namespace {
 
-const std::vector<TableColumn> kMethodColumns = {{"method", "method"},
+const std::vector<TableColumn> kMethodColumns = {{"grouper", "method"},
                                                  {"selected", "selected", 0},
                                                  {"precision", "precision", 3},
                                                  {"recall", "recall", 3},
@@ -24,7 +24,7 @@ const std::vector<TableColumn> kMethodColumns = {{"method", "method"},
                                                  {"outcome", "outcome"},
                                                  {"status", "status"}};
 
-const std::vector<TableColumn> kDenseColumns = {{"method", "method"},
+const std::vector<TableColumn> kDenseColumns = {{"grouper", "method"},
                                                 {"overlap before", "overlap_before", 3},
                                                 {"overlap", "overlap", 3},
                                                 {"residual before pr", "residual_before_pr", 3},
@@ -56,7 +56,7 @@ Json method_row(const MethodRecord& record) {
   return row;
 }
 
-/// What the dense refinement made of its pose; all null but the status if there was none to begin with.
+/// The result of the dense refinement; all null but the status if there was no pose to start from.
 Json dense_row(const MethodRecord& record) {
   const RefinedSurface dense = record.dense.value_or(RefinedSurface());
   const auto number = [&](double value) { return record.dense ? Json(value) : Json(nullptr); };
@@ -66,7 +66,7 @@ Json dense_row(const MethodRecord& record) {
               {"residual_pr", number(dense.after.rms_pr)}};
   add_errors(row, "", record.dense_errors, record.dense && record.score);
   row["condition"] = number(dense.condition);
-  row["status"] = record.dense ? to_text(record.dense->status) : "no pose to begin with";
+  row["status"] = record.dense ? to_text(record.dense->status) : "no pose to start from";
   return row;
 }
 
@@ -77,7 +77,7 @@ Json named_dense_row(const MethodRecord& record) {
   return row;
 }
 
-/// What ends a field is replaced.
+/// Characters that would end a field are replaced.
 std::string csv_cell(const Json& value) {
   if (value.is_null()) return "";
   if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
@@ -104,7 +104,7 @@ std::string csv_of(const std::vector<MethodRecord>& records, const Row& row_of) 
   return text;
 }
 
-/// A table of these rows without the columns that are empty.
+/// A table of these rows without empty columns.
 std::string full_columns_text(const std::vector<Json>& rows, std::vector<TableColumn> columns) {
   const auto is_empty = [&](const TableColumn& column) {
     return std::all_of(rows.begin(), rows.end(), [&](const Json& row) { return row[column.key].is_null(); });

@@ -12,20 +12,20 @@ namespace corral {
 
 Json to_json(const GroupingScore& score);
 
-/// Appends what a pose is worth against the truth, each key behind the prefix, null where it is undefined:
+/// Appends the errors of a pose, each key after the prefix, null where undefined:
 /// rotation_error_deg, translation_error_pr, rmse_pr, mean_error_pr, add_share, success_5pr (is_registered),
 /// success_from_pr (the least of success_thresholds_pr() at which it is), success_add (ADD below a tenth).
-/// `is_judged`: a pose that is not there has failed, where otherwise nothing is known of its success.
+/// `is_judged`: an absent pose counts as a failure; otherwise its success is unknown.
 void add_errors(Json& json, const std::string& prefix, const std::optional<PoseErrors>& errors, bool is_judged);
 
-/// The refinement: pose, costs, covariance, and with a truth the errors of the pose and, behind "initial_", of its start.
+/// The refinement: pose, costs, covariance, and with a truth the errors of the pose and, after "initial_", of its start.
 Json pose_json(const MethodRecord& record);
 
-/// A row of the table of methods, with the errors of the refined pose and, behind "initial_", of the fit to the selection;
-/// what the dense refinement made of it in a member of its own.
+/// A row of the table of groupers, with the errors of the refined pose and, after "initial_", of the fit to the selection;
+/// the result of the dense refinement is in a member of its own.
 Json to_json(const MethodRecord& record);
 
-/// The table of a pair for people, one row a method, and below them those of the bounds; without columns that are empty.
+/// The table of a pair for people, one row per grouper, then oracle and baseline; without empty columns.
 std::string methods_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
 /// The rows for scripts: the keys of to_json are the columns, exact numbers, 1 and 0, empty where undefined.
 std::string methods_csv(const std::vector<MethodRecord>& records);

@@ -100,7 +100,7 @@ void draw_matches(Image& image, const PairScene& scene, const Base& base, const 
 Image match_picture(const PairScene& scene, const Base& base, const DrawnGroup& group) {
   Indices correct, incorrect, missed;
   for (int row = 0; row < scene.source_points.rows(); ++row) {
-    const bool is_correct = scene.right.empty() || scene.right[static_cast<std::size_t>(row)];
+    const bool is_correct = scene.correct.empty() || scene.correct[static_cast<std::size_t>(row)];
     if (std::binary_search(group.selected.begin(), group.selected.end(), row))
       (is_correct ? correct : incorrect).push_back(row);
     else if (is_correct)
@@ -112,14 +112,14 @@ Image match_picture(const PairScene& scene, const Base& base, const DrawnGroup& 
     const double opacity = std::clamp(8 / std::sqrt(1.0 + static_cast<double>(rows.size())), 0.22, most);
     draw_matches(image, scene, base, rows, {color, image.width / 1000.0, opacity});
   };
-  draw(missed, kFaint, scene.right.empty() ? 0.25 : 0.5);
+  draw(missed, kFaint, scene.correct.empty() ? 0.25 : 0.5);
   if (incorrect.size() > correct.size()) draw(incorrect, kRed, 0.9);  // the fewer on top
-  draw(correct, scene.right.empty() ? kBlue : kGreen, 0.9);
+  draw(correct, scene.correct.empty() ? kBlue : kGreen, 0.9);
   if (incorrect.size() <= correct.size()) draw(incorrect, kRed, 0.9);
   const auto count = [](const Indices& rows, const std::string& word) {
     return std::to_string(rows.size()) + " " + word;
   };
-  if (scene.right.empty())
+  if (scene.correct.empty())
     draw_title(image, {{group.title + "    ", kBlack},
                        {count(correct, "selected"), kBlue},
                        {", ", kBlack},

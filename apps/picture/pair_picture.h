@@ -14,7 +14,7 @@ struct PairScene {
   PaintedSurface source, target;
   std::optional<RigidTransform> truth;  ///< target_from_source, or an approximation: orients the two surfaces alike
   Points source_points, target_points;  ///< of the matches, M rows in mesh units
-  std::vector<bool> right;              ///< correct matches, M, or empty where the truth is not known
+  std::vector<bool> correct;            ///< correct matches, M, or empty where the truth is not known
 };
 
 /// The selection of a grouper, with a title.

@@ -14,7 +14,7 @@
 
 namespace corral {
 
-const EmbeddedFiles& embedded_page();  // the files of apps/experiment/page
+const EmbeddedFiles& embedded_page();  // the files of apps/report/page
 
 namespace {
 
@@ -24,7 +24,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Within a script element only these can end it, or open one in it; in a string of JSON or JavaScript they mean the
+/// Escapes what could end a script element or open another in it; in a string of JSON or JavaScript the meaning is the
 /// same.
 std::string json_in_html(const Json& json) { return replaced(compact_json(json), "<", "\\u003c"); }
 std::string script_in_html(const std::string& script) {
@@ -33,7 +33,7 @@ std::string script_in_html(const std::string& script) {
 
 std::string text_in_html(const std::string& text) { return replaced(replaced(text, "&", "&amp;"), "<", "&lt;"); }
 
-/// The template with each {{name}} replaced; what is put in is not looked at again.
+/// The template with each {{name}} replaced, not recursively.
 std::string filled(const std::string& html, const std::map<std::string, std::string>& parts) {
   std::string text;
   std::size_t at = 0;
@@ -60,7 +60,7 @@ std::string libraries(const std::string& folder) {
 
 }  // namespace
 
-std::string report_page(const std::vector<RunFolder>& runs, const std::vector<StudyResults>& studies,
+std::string report_page(const std::vector<StudyFolder>& runs, const std::vector<StudyResults>& studies,
                         const PageOptions& options) {
   const std::string scripts = libraries(options.scripts);
   Json data = {{"title", options.title},

@@ -23,7 +23,7 @@ struct PageOptions {
 /// worst, then the best, then the others, until there are enough; one that cannot be drawn is named with the reason. Same
 /// runs, same bytes. `studies`: of the runs.
 /// Throws    IoError: a file of a run, or a script of the two packages, that is missing or wrong.
-std::string report_page(const std::vector<RunFolder>& runs, const std::vector<StudyResults>& studies,
+std::string report_page(const std::vector<StudyFolder>& runs, const std::vector<StudyResults>& studies,
                         const PageOptions& options = {});
 
 }  // namespace corral

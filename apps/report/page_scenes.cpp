@@ -81,7 +81,7 @@ std::string float_text(const std::vector<double>& values) {
   return base64(bytes);
 }
 
-/// One bit a match, the first the lowest of the first byte.
+/// One bit per match, the first in the lowest bit of the first byte.
 std::string bit_text(const Indices& rows, std::size_t matches) {
   std::string bytes((matches + 7) / 8, '\0');
   for (const int row : rows) {
@@ -152,7 +152,7 @@ std::string keypoint_text(const MeshShelf::Place& place, const Indices& keypoint
   return quantized(points, place.box);
 }
 
-Json scene_of(const RunFolder& run, const SceneChoice& choice, MeshShelf& shelf) {
+Json scene_of(const StudyFolder& run, const SceneChoice& choice, MeshShelf& shelf) {
   const std::string path = (std::filesystem::path(run.folder) / choice.selection).string();
   const PairSelections selections = read_selections(path);
   const auto pair = run.pairs.find(choice.dataset + "/" + choice.pair);
@@ -180,7 +180,7 @@ Json scene_of(const RunFolder& run, const SceneChoice& choice, MeshShelf& shelf)
 }
 
 /// The scenes of a level from the least mean F1 of the groupers to the best; those without a score first.
-std::vector<SceneChoice> scenes_by_f1(const RunFolder& run, int number, const ExperimentInfo& experiment,
+std::vector<SceneChoice> scenes_by_f1(const StudyFolder& run, int number, const ExperimentInfo& experiment,
                                       const std::string& level) {
   struct Tally {
     double sum = 0;
@@ -206,7 +206,7 @@ std::vector<SceneChoice> scenes_by_f1(const RunFolder& run, int number, const Ex
 
 }  // namespace
 
-std::vector<SceneChoice> choose_scenes(const std::vector<RunFolder>& runs, int most) {
+std::vector<SceneChoice> choose_scenes(const std::vector<StudyFolder>& runs, int most) {
   std::vector<std::vector<SceneChoice>> levels;
   std::size_t longest = 0;
   for (std::size_t number = 0; number < runs.size(); ++number)
@@ -214,7 +214,7 @@ std::vector<SceneChoice> choose_scenes(const std::vector<RunFolder>& runs, int m
       for (const StudyLevel& level : experiment.levels) {
         std::vector<SceneChoice> scenes = scenes_by_f1(runs[number], static_cast<int>(number), experiment, level.label);
         if (scenes.empty()) continue;
-        // Median, worst, best, and then as they stand.
+        // Median, worst, best, and then in their order.
         std::rotate(scenes.begin(), scenes.begin() + static_cast<std::ptrdiff_t>((scenes.size() - 1) / 2),
                     scenes.begin() + static_cast<std::ptrdiff_t>((scenes.size() + 1) / 2));
         if (scenes.size() > 2) std::rotate(scenes.begin() + 2, scenes.end() - 1, scenes.end());
@@ -231,7 +231,7 @@ std::vector<SceneChoice> choose_scenes(const std::vector<RunFolder>& runs, int m
   return chosen;
 }
 
-Json page_scenes(const std::vector<RunFolder>& runs, const std::vector<SceneChoice>& choices) {
+Json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices) {
   MeshShelf shelf;
   Json scenes = Json::array();
   Progress progress(static_cast<double>(choices.size()));

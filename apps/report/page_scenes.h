@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 
 namespace corral {
 
-/// A pair as it was matched: the records of one file of selections.
+/// A matched pair: the records of one file of selections.
 struct SceneChoice {
   int run = 0;
   std::string dataset, pair, selection;
 };
 
 /// At most `most` scenes: of every level of every experiment the one of median mean F1, then the worst, then the best,
-/// then the others. Those without a file of selections are none.
-std::vector<SceneChoice> choose_scenes(const std::vector<RunFolder>& runs, int most);
+/// then the others. Pairs without a file of selections are left out.
+std::vector<SceneChoice> choose_scenes(const std::vector<StudyFolder>& runs, int most);
 
 /// Surfaces and matches of the chosen, as JSON {meshes, scenes}. Coordinates are 16 bit of the box of their mesh, in
 /// base64.
@@ -26,6 +26,6 @@ std::vector<SceneChoice> choose_scenes(const std::vector<RunFolder>& runs, int m
 ///           target_points, residuals (floats, or null), truth, selected {method: bits},
 ///           poses {method: {stage: 12 numbers}}}, or {run, dataset, pair, selection, problem} for a file that cannot
 ///           be used
-nlohmann::ordered_json page_scenes(const std::vector<RunFolder>& runs, const std::vector<SceneChoice>& choices);
+nlohmann::ordered_json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices);
 
 }  // namespace corral

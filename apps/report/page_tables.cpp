@@ -16,7 +16,7 @@
 namespace corral {
 namespace {
 
-std::string path_in(const RunFolder& run, const std::string& name) {
+std::string path_in(const StudyFolder& run, const std::string& name) {
   return (std::filesystem::path(run.folder) / name).string();
 }
 
@@ -28,8 +28,8 @@ Json rounded(const std::optional<double>& value) {
   return *parse_double(digits);
 }
 
-/// The manifest without what the page shows elsewhere, or is too long for it.
-Json facts_of(const RunFolder& run) {
+/// The manifest without parts that the page shows elsewhere or that are too long.
+Json facts_of(const StudyFolder& run) {
   const std::string path = path_in(run, "manifest.json");
   try {
     const Json manifest = Json::parse(read_file(path));
@@ -69,7 +69,7 @@ Json means_of(const StudyResults& study, const ExperimentInfo& experiment) {
 }
 
 Json experiments_of(const StudyResults& study, int number) {
-  const RunFolder& run = *study.run;
+  const StudyFolder& run = *study.run;
   Json experiments = Json::array();
   for (const ExperimentInfo& experiment : run.experiments) {
     Json levels = Json::array(), bounds = Json::array();
@@ -95,7 +95,7 @@ Json experiments_of(const StudyResults& study, int number) {
   return experiments;
 }
 
-/// Names that stand in many records, each once.
+/// Names that occur in many records, each once.
 class Words {
  public:
   int number(const std::string& word) {
@@ -147,7 +147,7 @@ Json measures_of() {
 
 /// How each method looks in the figures.
 Json styles_of(const std::vector<StudyResults>& studies) {
-  std::vector<std::string> methods = {"oracle", "floor"};
+  std::vector<std::string> methods = {"oracle", "baseline"};
   for (const StudyResults& study : studies)
     for (const ExperimentInfo& experiment : study.run->experiments)
       methods.insert(methods.end(), experiment.methods.begin(), experiment.methods.end());
@@ -163,7 +163,7 @@ Json page_tables(const std::vector<StudyResults>& studies) {
   Json folders = Json::array(), experiments = Json::array(), columns = Json::object();
   Words words;
   for (std::size_t number = 0; number < studies.size(); ++number) {
-    const RunFolder& run = *studies[number].run;
+    const StudyFolder& run = *studies[number].run;
     const std::string name = std::filesystem::path(run.folder).lexically_normal().filename().string();
     folders.push_back({{"folder", name.empty() ? run.folder : name}, {"facts", facts_of(run)}});
     for (const Json& experiment : experiments_of(studies[number], static_cast<int>(number)))

@@ -8,7 +8,7 @@
 
 namespace corral {
 
-/// What a page shows in figures and tables, as JSON of numbers rounded to five digits:
+/// The figures and tables of a page, as JSON with numbers rounded to five digits:
 ///   runs         {folder, facts}: the manifest without its experiments and pairs
 ///   experiments  {run, name, title, figure, dataset, attribute, axis, levels, methods, bounds, threshold_pr,
 ///                least_true_matches, means}, means: the rows of the summary, or of the times

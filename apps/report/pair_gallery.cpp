@@ -19,9 +19,9 @@ namespace corral {
 namespace {
 
 /// The first record of every pair that has selections, by name.
-std::map<std::string, GalleryPair> pairs_of(const std::vector<RunFolder>& runs) {
+std::map<std::string, GalleryPair> pairs_of(const std::vector<StudyFolder>& runs) {
   std::map<std::string, GalleryPair> pairs;
-  for (const RunFolder& run : runs)
+  for (const StudyFolder& run : runs)
     for (const StudyRecord& record : run.records) {
       const GalleryPair pair{&run, &record};
       if (!record.selection.empty() && run.pairs.count(pair.name()) > 0) pairs.emplace(pair.name(), pair);
@@ -65,7 +65,7 @@ std::vector<DrawnGroup> groups_of(const ExperimentInfo& info, const PairSelectio
   return groups;
 }
 
-/// Every method's poses, one row each; a stage that no method has is left out.
+/// The poses of every grouper, one row each; a stage that no grouper has is left out.
 class PoseGrid {
  public:
   PoseGrid(const GalleryPair& pair, const std::vector<StudyPose>& poses) {
@@ -113,12 +113,12 @@ std::string expected_pair(const std::string& name, const std::map<std::string, G
   }
   const std::string nearest = nearest_name(name, names);
   const std::string such_as = nearest.empty() && !names.empty() ? names.back() : nearest;
-  return "a pair of the runs with selections" + (such_as.empty() ? "" : ", such as " + such_as);
+  return "a pair with selections" + (such_as.empty() ? "" : ", such as " + such_as);
 }
 
 }  // namespace
 
-std::vector<GalleryPair> choose_gallery(const std::vector<RunFolder>& runs, const std::vector<std::string>& names) {
+std::vector<GalleryPair> choose_gallery(const std::vector<StudyFolder>& runs, const std::vector<std::string>& names) {
   const std::map<std::string, GalleryPair> pairs = pairs_of(runs);
   std::vector<GalleryPair> chosen;
   for (const std::string& name : names) {
@@ -150,7 +150,7 @@ std::vector<FileContent> draw_gallery_pair(const GalleryPair& pair) {
   if (!files.truth.empty()) scene.truth = read_transform(files.truth);
   scene.source_points = vertices_at(scene.source.mesh, selections.source_keypoints, files.source);
   scene.target_points = vertices_at(scene.target.mesh, selections.target_keypoints, files.target);
-  for (const double residual : selections.residual_pr) scene.right.push_back(residual <= info.threshold_pr);
+  for (const double residual : selections.residual_pr) scene.correct.push_back(residual <= info.threshold_pr);
   const std::vector<DrawnGroup> groups = groups_of(info, selections);
   const std::string base = file_name_part(pair.record->dataset) + "-" + file_name_part(pair.record->pair) + "-";
   std::vector<FileContent> pictures = {

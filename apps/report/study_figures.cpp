@@ -40,7 +40,7 @@ Panel empty_panel(const ExperimentInfo& info, const std::string& measure) {
 
 std::vector<std::string> methods_of(const ExperimentInfo& info, bool with_bounds) {
   std::vector<std::string> methods = info.methods;
-  if (with_bounds) methods.insert(methods.end(), {"oracle", "floor"});
+  if (with_bounds) methods.insert(methods.end(), {"oracle", "baseline"});
   return methods;
 }
 
@@ -57,8 +57,8 @@ bool keep_drawn(Panel& panel) {
 
 std::string pairs_note(const ExperimentInfo& info) {
   return "Means over pairs. An empty selection counts as 0, a missing pose as a failure. Excluded: pairs with fewer "
-         "true matches than " +
-         std::to_string(info.least_true_matches) + ", for all methods.";
+         "correct matches than " +
+         std::to_string(info.least_true_matches) + ", for all groupers.";
 }
 
 Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Measure& measure) {
@@ -92,7 +92,7 @@ Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Mea
 }
 
 /// The records that the means of an experiment are over, by method.
-std::map<std::string, std::vector<const StudyRecord*>> counted_records(const RunFolder& run,
+std::map<std::string, std::vector<const StudyRecord*>> counted_records(const StudyFolder& run,
                                                                        const ExperimentInfo& info) {
   std::map<std::string, std::vector<const StudyRecord*>> counted;
   for (const StudyRecord& record : run.records)
@@ -102,7 +102,7 @@ std::map<std::string, std::vector<const StudyRecord*>> counted_records(const Run
   return counted;
 }
 
-void add_distributions(const RunFolder& run, const ExperimentInfo& info, StudyFigures& figures) {
+void add_distributions(const StudyFolder& run, const ExperimentInfo& info, StudyFigures& figures) {
   const auto records = counted_records(run, info);
   Panel curve = empty_panel(info, "success-curve");
   curve.axes = PanelAxes::Curve;
@@ -129,7 +129,7 @@ void add_distributions(const RunFolder& run, const ExperimentInfo& info, StudyFi
 }
 
 /// Median times with their quartiles.
-Panel time_panel(const RunFolder& run, const ExperimentInfo& info) {
+Panel time_panel(const StudyFolder& run, const ExperimentInfo& info) {
   Panel panel = empty_panel(info, "time");
   panel.axes = PanelAxes::Logarithmic;
   const Measure& time = measure("time_ms");

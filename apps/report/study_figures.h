@@ -10,7 +10,7 @@
 
 namespace corral {
 
-/// What can be drawn of some runs.
+/// The figures of some studies.
 struct StudyFigures {
   std::vector<Panel> panels;
   std::vector<BoxPanel> boxes;
@@ -24,7 +24,7 @@ struct StudyFigures {
 /// Throws    IoError: two runs with one experiment on one data set.
 StudyFigures study_figures(const std::vector<StudyResults>& studies);
 
-/// Text as a part of a file name: what is no letter, digit or one of . _ + becomes an underscore.
+/// Text as a part of a file name: characters other than letters, digits and . _ + become underscores.
 std::string file_name_part(const std::string& text);
 
 }  // namespace corral

@@ -14,7 +14,7 @@ namespace corral {
 std::vector<std::string> metric_names();
 const Measure& metric_of(const std::string& name);  ///< throws InvalidInput
 
-/// Two methods on the same pairs.
+/// Two groupers on the same pairs.
 struct MethodPair {
   std::string first, second;
   MeanInterval difference;  ///< first - second
@@ -35,7 +35,7 @@ struct LevelMean {
   MeanInterval mean;
 };
 
-/// The methods of an experiment beside each other.
+/// The comparison of the groupers of an experiment.
 struct MethodComparison {
   std::string experiment;
   std::vector<std::string> methods;  ///< those with numbers, in the experiment's order; the bounds left out
@@ -46,7 +46,7 @@ struct MethodComparison {
   std::vector<LevelMean> levels;  ///< level by level, over all pairs that count
 };
 
-/// Compares on the pairs that count, over all levels; a pair that stands at several levels is one, by the mean of its numbers.
+/// Compares on the pairs that count, over all levels; a pair that occurs at several levels is one, by the mean of its numbers.
 /// Deterministic. Nothing but the levels is filled with fewer than 2 methods or without a common pair.
 MethodComparison compare_methods(const ExperimentTable& table, const Measure& measure);
 

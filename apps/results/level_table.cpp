@@ -46,7 +46,7 @@ class RowKeys {
   std::map<std::tuple<std::string, std::string, std::string, std::string, double>, int> tables_;
 };
 
-Layout lay_out(const RunFolder& run) {
+Layout lay_out(const StudyFolder& run) {
   Layout layout;
   std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> levels;
   for (const ExperimentInfo& info : run.experiments) {
@@ -152,7 +152,7 @@ const RowNumbers* LevelTable::column(const Measure& measure, const std::string& 
   return found == methods.end() ? nullptr : &found->second.numbers.at(measure.name);
 }
 
-std::vector<ExperimentTable> experiment_tables(const RunFolder& run) {
+std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
   Layout layout = lay_out(run);
   const auto level_of = [&](const Place& place) -> LevelTable& {
     return layout.tables[place.experiment].levels[place.level];
@@ -200,7 +200,7 @@ double median_of(RowNumbers values) {
   return quantile_of(std::move(values), 0.5);
 }
 
-std::vector<RowNumbers> selection_agreement(const RunFolder& run, const ExperimentTable& table,
+std::vector<RowNumbers> selection_agreement(const StudyFolder& run, const ExperimentTable& table,
                                             const std::vector<std::string>& methods) {
   std::map<std::string, double> known;
   std::vector<RowNumbers> agreements;

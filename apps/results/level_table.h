@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "apps/results/measures.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 
 namespace corral {
 
-/// One number for each row of a level; NaN where there is none, which every mean passes over.
+/// One number for each row of a level; NaN where there is none, which means ignore.
 using RowNumbers = std::vector<double>;
 
 /// What a method made of the rows of a level, each the mean over its repeats, by the name of the measure.
@@ -42,9 +42,9 @@ struct ExperimentTable {
 };
 
 /// A table for each experiment of the run. Records without a level (pairs that failed where the number of matches is the
-/// level) are passed over. Repeats of a method on a pair stand one behind the other, from 0, as in records.csv.
+/// level) are ignored. Repeats of a grouper on a pair follow one another, from 0, as in records.csv.
 /// Throws    IoError if a record names an experiment or level that the manifest lacks.
-std::vector<ExperimentTable> experiment_tables(const RunFolder& run);
+std::vector<ExperimentTable> experiment_tables(const StudyFolder& run);
 
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.
 double mean_of(const RowNumbers& column);
@@ -55,9 +55,9 @@ double median_of(RowNumbers values);       ///< likewise
 /// Whether a level lies in low .. high, ends included; levels are decimal numbers, so ends may be off by their rounding.
 bool is_within(const StudyLevel& level, double low, double high);
 
-/// For each row, how alike the methods' selections are: the mean Jaccard index over pairs of methods, two empty ones left
-/// out. Reads the files of selections that the records name; NaN where there is none (a run may be kept without them).
-std::vector<RowNumbers> selection_agreement(const RunFolder& run, const ExperimentTable& table,
+/// For each row the agreement of the selections: the mean Jaccard index over pairs of groupers, without pairs of empty
+/// selections. Reads the files of selections that the records name; NaN where there is none (a study may lack them).
+std::vector<RowNumbers> selection_agreement(const StudyFolder& run, const ExperimentTable& table,
                                             const std::vector<std::string>& methods);
 
 }  // namespace corral

@@ -53,7 +53,7 @@ struct Measure {
 
 constexpr unsigned kHeadline = 1;    ///< has an interval in the summary, and what groupers are compared by
 constexpr unsigned kFigure = 2;      ///< a panel over the levels
-constexpr unsigned kWithBounds = 4;  ///< there the oracle and the floor say something
+constexpr unsigned kWithBounds = 4;  ///< there the oracle and the baseline say something
 constexpr unsigned kOnPage = 8;      ///< a column of the page's table of records
 constexpr unsigned kOfPair = 16;     ///< the same whatever the method
 constexpr unsigned kEveryPair = 32;  ///< of excluded pairs too

@@ -7,7 +7,7 @@
 
 namespace corral {
 
-/// A mean and the interval that holds the true one in 95 of 100 studies.
+/// A mean and its 95 % confidence interval.
 struct MeanInterval {
   double mean = 0, low = 0, high = 0;
 };
@@ -15,9 +15,10 @@ struct MeanInterval {
 constexpr int kResamples = 1000;
 
 /// Bootstrap over the values (of pairs, or of differences on the same pairs): bias-corrected and accelerated (BCa,
-/// [efron1987better]) at Student's quantiles instead of the normal ones. Over 10 pairs with precisions as they occur, plain
-/// percentiles hold the true mean in only 86 to 92 of 100 studies and BCa in 87 to 95; these, over 10 to 30 pairs, in 93 to
-/// 97. Deterministic in values and seed. Throws InvalidInput without values; of a single value the interval is that value.
+/// [efron1987better]) at Student's quantiles instead of the normal ones. For 10 pairs with realistic precisions, plain
+/// percentiles contain the true mean in only 86 to 92 of 100 studies and BCa in 87 to 95; these intervals, for 10 to 30 pairs,
+/// in 93 to 97. Deterministic in values and seed. Throws InvalidInput without values; of a single value the interval is that
+/// value.
 MeanInterval bootstrap_mean(const std::vector<double>& values, std::uint64_t seed);
 
 /// Whether paired differences are centred at zero, two-sided. Zeros are left out (Wilcoxon's treatment). Exact for at most
@@ -30,10 +31,10 @@ struct WilcoxonTest {
 };
 WilcoxonTest wilcoxon_signed_rank(const std::vector<double>& differences);
 
-/// Holm's step-down adjustment: each p beside the others that were tested with it.
+/// Holm's step-down adjustment of p-values that were tested together.
 std::vector<double> holm_adjusted(const std::vector<double>& p);
 
-/// Whether two methods succeed equally often on the same pairs, from the pairs on which only one of them does.
+/// Whether two groupers succeed equally often on the same pairs, from the pairs on which only one of them does.
 struct McNemarTest {
   double exact_p = 1;                       ///< binomial, two-sided
   double chi_square = 0, chi_square_p = 1;  ///< with Edwards' continuity correction, one degree of freedom
@@ -50,8 +51,8 @@ double studentized_range_quantile(double p, int groups);
 struct RankComparison {
   std::vector<double> average_ranks;      ///< in the order given
   double chi_square = 0, p = 1;           ///< Friedman's test that all are equal, corrected for ties
-  double critical_difference = 0;         ///< Nemenyi's, at 5 %: average ranks that lie further apart differ
-  std::vector<std::vector<int>> cliques;  ///< largest groups within it, of 2 or more, each from the best on
+  double critical_difference = 0;         ///< Nemenyi's, at 5 %: average ranks further apart than this differ
+  std::vector<std::vector<int>> cliques;  ///< maximal groups within it, of 2 or more, each sorted from the best
 };
 /// scores[method][pair], higher is better. Throws InvalidInput for fewer than 2 methods, no pair, ragged rows, or values
 /// that are no numbers.

@@ -9,16 +9,16 @@
 
 namespace corral {
 
-/// A pose against the truth; what could not be had is absent.
+/// The errors of a pose; what could not be computed is absent.
 struct PoseScores {
   std::optional<double> rotation_error_deg, translation_error_pr;
-  std::optional<double> mean_error_pr;  ///< mean distance of the overlap's points, as the curves of success take it
+  std::optional<double> mean_error_pr;  ///< mean distance over the overlap, as in success curves
   std::optional<double> rmse_pr;        ///< root mean square of the same
   std::optional<double> add_share;      ///< mean distance of all source vertices, in diameters of the source
 };
 
-/// A row of records.csv: one method on one pair at one level of one experiment. "oracle" (all right matches) and "floor"
-/// (all matches) stand among the methods where the truth is known.
+/// A row of records.csv: one grouper on one pair at one level of one experiment. "oracle" (all correct matches) and
+/// "baseline" (all matches) are listed like groupers where the truth is known.
 struct StudyRecord {
   std::string experiment, dataset, level, pair, method;
   int repeat = 0;               ///< from 0
@@ -26,10 +26,10 @@ struct StudyRecord {
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
-  std::optional<double> frame_share;            ///< of the right matches, those whose frames agree within 10 degrees
-  PoseScores initial, refined, dense;           ///< of the fit to the selection, refined on it, laid on the surface
+  std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
+  PoseScores initial, refined, dense;           ///< of the fit to the selection, the refined and the dense pose
   std::optional<double> time_ms;                ///< of the grouping alone
-  std::string selection;                        ///< file of selections, below the run's folder; empty if there is none
+  std::string selection;                        ///< file of selections in the study folder; empty if there is none
 };
 
 /// The names of the columns, in order.

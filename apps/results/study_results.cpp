@@ -35,21 +35,21 @@ std::string time_text(const std::vector<TimeRow>& rows) {
   return text;
 }
 
-std::vector<StudyResults> tables_of(const std::vector<RunFolder>& runs) {
+std::vector<StudyResults> tables_of(const std::vector<StudyFolder>& runs) {
   std::vector<StudyResults> results;
-  for (const RunFolder& run : runs) results.push_back({&run, experiment_tables(run), {}});
+  for (const StudyFolder& run : runs) results.push_back({&run, experiment_tables(run), {}});
   return results;
 }
 
-std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs) {
+std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs) {
   std::vector<StudyResults> results = tables_of(runs);
   for (StudyResults& study : results) study.summary = summarize(study.tables);
   return results;
 }
 
-std::vector<RunFolder> read_runs(const std::vector<std::string>& folders) {
-  std::vector<RunFolder> runs;
-  for (const std::string& folder : folders) runs.push_back(read_run(folder));
+std::vector<StudyFolder> read_runs(const std::vector<std::string>& folders) {
+  std::vector<StudyFolder> runs;
+  for (const std::string& folder : folders) runs.push_back(read_study(folder));
   return runs;
 }
 

@@ -24,16 +24,16 @@ std::string time_text(const std::vector<TimeRow>& rows);  ///< as the file time.
 
 /// What is worked out of a run's records, once. The run must outlive it.
 struct StudyResults {
-  const RunFolder* run = nullptr;
+  const StudyFolder* run = nullptr;
   std::vector<ExperimentTable> tables;  ///< of each experiment
   std::vector<SummaryRow> summary;
 };
-std::vector<StudyResults> results_of(const std::vector<RunFolder>& runs);
-std::vector<StudyResults> results_of(std::vector<RunFolder>&& runs) = delete;
+std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs);
+std::vector<StudyResults> results_of(std::vector<StudyFolder>&& runs) = delete;
 /// The same without the summary, whose intervals take a second.
-std::vector<StudyResults> tables_of(const std::vector<RunFolder>& runs);
+std::vector<StudyResults> tables_of(const std::vector<StudyFolder>& runs);
 
-/// Throws IoError as read_run.
-std::vector<RunFolder> read_runs(const std::vector<std::string>& folders);
+/// Throws IoError as read_study.
+std::vector<StudyFolder> read_runs(const std::vector<std::string>& folders);
 
 }  // namespace corral

@@ -91,7 +91,7 @@ std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables) {
   std::vector<SummaryRow> rows;
   for (const ExperimentTable& table : tables) {
     std::vector<std::string> methods = table.info.methods;
-    methods.insert(methods.end(), {"oracle", "floor"});
+    methods.insert(methods.end(), {"oracle", "baseline"});
     for (const LevelTable& level : table.levels)
       for (const std::string& method : methods) rows.push_back(row_of(table.info, level, method));
   }

@@ -15,7 +15,7 @@ struct SummaryValue {
   std::optional<double> value, low, high;
 };
 
-/// One method at one level of one experiment, as its LevelTable has it.
+/// One grouper at one level of one experiment, from its LevelTable.
 ///
 /// A pair with fewer right matches than the experiment asks for is excluded for all methods. Means are unweighted over the
 /// pairs that stay (a pair that gave several tables counts with each); repeats count as one, by their mean. An empty
@@ -26,7 +26,7 @@ struct SummaryRow {
   int pairs = 0;     ///< that the means are over
   int excluded = 0;  ///< with too few right matches
   int empty = 0;     ///< of `pairs`, those where nothing was selected (in any repeat)
-  int failed = 0;    ///< pairs that could not be matched, or on which the method gave no answer (in any repeat)
+  int failed = 0;    ///< pairs that could not be matched, or on which the grouper gave no answer (in any repeat)
   std::map<std::string, SummaryValue> values;  ///< by the name of the measure; nothing where no row has the method
 
   SummaryValue of(const std::string& measure) const;

@@ -6,7 +6,7 @@
 
 namespace corral {
 
-/// What this program was made of and where it runs.
+/// How this program was built and where it runs.
 struct BuildInfo {
   std::string version;   ///< "0.1.0"
   std::string commit;    ///< of the source tree, "-dirty" behind it if that was changed; "unknown" outside a repository

@@ -6,8 +6,8 @@
 
 namespace corral {
 
-/// Text files that the program carries with it, by their names. corral_embed (embed.cmake) makes the functions that return
-/// them; who uses one declares it: `const EmbeddedFiles& embedded_claims();`
+/// Text files that are compiled into the program, by name. corral_embed (embed.cmake) makes the functions that return them;
+/// their users declare them: `const EmbeddedFiles& embedded_claims();`
 using EmbeddedFiles = std::map<std::string, std::string>;
 
 }  // namespace corral

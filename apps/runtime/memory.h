@@ -6,14 +6,14 @@
 
 namespace corral {
 
-/// The most memory that this process has held so far, in MB (10^6 bytes).
+/// Peak memory of this process so far, in MB (10^6 bytes).
 inline double peak_memory_mb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1.024e-3;
 }
 
-/// Half of what this machine has, in bytes.
+/// Half of the memory of this machine, in bytes.
 inline double half_of_memory() {
   return 0.5 * static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }

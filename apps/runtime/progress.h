@@ -6,7 +6,7 @@
 
 namespace corral {
 
-/// A progress bar with the time left, on stderr and only if that is a terminal. Gone when it is destroyed.
+/// A progress bar with the remaining time, on stderr if that is a terminal. It is erased on destruction.
 class Progress {
  public:
   explicit Progress(double total_steps);
@@ -14,7 +14,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Says what begins now; everything announced before is done. `steps`: its share of the whole.
+  /// Announces the next step; all earlier ones are done. `steps`: its share of the work.
   void begin(const std::string& what, double steps = 1);
 
  private:

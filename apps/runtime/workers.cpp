@@ -12,7 +12,7 @@ namespace corral {
 ParallelFor workers(int threads) {
   if (threads == 1) return one_by_one;
   using oneapi::tbb::global_control;
-  // More than the machine has are given too if they are asked for, and without a warning.
+  // More threads than processors are allowed, without a warning of the library.
   const auto limit = threads == 0 ? nullptr
                                   : std::make_shared<global_control>(global_control::max_allowed_parallelism,
                                                                      static_cast<std::size_t>(threads));

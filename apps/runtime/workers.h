@@ -5,7 +5,7 @@
 
 namespace corral {
 
-/// Spreads the calls over so many threads; 0: as many as the machine has. What a call throws, the loop throws.
+/// Runs the calls on this many threads; 0: as many as there are processors. An exception of a call is rethrown by the loop.
 ParallelFor workers(int threads);
 
 }  // namespace corral

@@ -67,12 +67,12 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
   }
   if (result.failure.empty() && !result.has_truth) return;
   if (!result.failure.empty() && unit.pair.truth.empty()) return;
-  for (const char* bound : {"oracle", "floor"}) {
+  for (const char* bound : {"oracle", "baseline"}) {
     StudyRecord record = common;
     record.method = bound;
     if (result.failure.empty())
       record =
-          scored(std::move(record), record.method == "floor" ? *result.floor : result.oracles[threshold], threshold);
+          scored(std::move(record), record.method == "baseline" ? *result.baseline : result.oracles[threshold], threshold);
     records.push_back(std::move(record));
   }
 }

@@ -9,8 +9,8 @@
 
 namespace corral {
 
-/// The rows of records.csv from the answers of all units: by experiment, level, unit, method and repeat, the bounds behind the
-/// methods. A pair that failed has a row for each of them with its cause. Tables whose size is at no level are left out.
+/// The rows of records.csv from the results of all units: by experiment, level, unit, grouper and repeat, oracle and baseline
+/// last. A pair that failed has a row for each of them with its cause. Tables whose size is at no level are left out.
 std::vector<StudyRecord> assemble_records(const WorkList& list, const std::vector<UnitResult>& results);
 
 /// As the file records.csv.

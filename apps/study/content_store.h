@@ -10,17 +10,17 @@
 
 namespace corral {
 
-/// 32 hexadecimal digits that differ where contents differ (a 128-bit hash; not against those who forge).
+/// 32 hexadecimal digits: a 128-bit hash of the content, not cryptographic.
 std::string content_hash(const std::string& content);
 
-/// The matches of a pair, and how many keypoints they were looked for from.
+/// The matches of a pair, and the number of keypoints on either side.
 struct StoredMatches {
   CorrespondenceSet matches;
   int source_keypoints = 0;
 };
 
-/// Intermediate results by the hash of all that they depend on. Whatever is missing, damaged or could not be written is absent,
-/// and is made anew.
+/// Intermediate results by the hash of everything they depend on. A result that is missing, damaged or could not be written
+/// is absent, and is computed again.
 class ContentStore {
  public:
   explicit ContentStore(std::string folder);  ///< throws IoError if it cannot be created

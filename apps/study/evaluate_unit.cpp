@@ -8,7 +8,7 @@
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/read_surface.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
@@ -17,8 +17,8 @@
 namespace corral {
 namespace {
 
-/// Part of every key, to be changed with whatever makes something else of the same input; another commit of the program makes
-/// everything anew too.
+/// Part of every key, to be changed with the format of the results; another commit of the program also computes everything
+/// again.
 constexpr char kFormat[] = "corral study 2";
 
 std::string key_of(const std::vector<std::string>& parts) {
@@ -38,7 +38,7 @@ int keypoints_of(const Descriptors& descriptors) {
 FeatureCache feature_cache(const UnitWork& work, const std::string& file) {
   return [&work, file](double resolution, const std::function<SurfaceFeatures()>& make) {
     MatchSettings settings = work.unit.matching;
-    settings.resolution = to_text(resolution);  // whatever rule it came from
+    settings.resolution = to_text(resolution);  // by whatever rule it was computed
     const std::string key = key_of({"features", hash_of(work.inputs, file), matching_text(settings)});
     SurfaceFeatures features;
     if (auto found = work.store.descriptors(key)) {
@@ -67,7 +67,7 @@ PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   return scores;
 }
 
-/// One pair with its meshes: what all steps after the matching share.
+/// One pair with its meshes, for all steps after the matching.
 class PairStudy {
  public:
   explicit PairStudy(const UnitWork& work)
@@ -80,7 +80,7 @@ class PairStudy {
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
     for (const double threshold : unit_.thresholds_pr)
-      labels_.push_back(label_inliers(matches_, truth_->target_from_source, threshold));
+      labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
   }
 
   UnitResult evaluate() {
@@ -102,8 +102,8 @@ class PairStudy {
     }
     for (const MethodRecord& record : records_) result.tasks.push_back(result_of(record));
     for (const MethodRecord& bound : bounds) result.oracles.push_back(result_of(bound));
-    if (!bounds.empty()) {  // the floor stands last
-      result.floor = result.oracles.back();
+    if (!bounds.empty()) {  // the baseline stands last
+      result.baseline = result.oracles.back();
       result.oracles.pop_back();
     }
     for (const std::vector<bool>& labels : labels_) {
@@ -135,7 +135,7 @@ class PairStudy {
   }
 
  private:
-  /// The oracle of every threshold, then the floor.
+  /// The oracle of every threshold, then the baseline.
   std::vector<MethodRecord> evaluate_all_bounds() const {
     std::vector<MethodRecord> bounds, last;
     if (!truth_) return bounds;
@@ -215,7 +215,7 @@ UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) 
     study.add_files(files);
     return result;
   } catch (const std::bad_alloc&) {
-    throw;  // says nothing about the pair
+    throw;  // not a failure of the pair
   } catch (const std::exception& error) {
     UnitResult failed;
     failed.failure = *error.what() ? one_line(error.what()) : "no reason given";

@@ -13,7 +13,7 @@
 
 namespace corral {
 
-/// How one call of a grouper ended, or what all right matches (the oracle) or all matches (the floor) lead to.
+/// The result of one call of a grouper, or of all correct matches (the oracle) or all matches (the baseline).
 struct TaskResult {
   MethodStatus status;
   std::optional<int> selected;  ///< absent if there is no answer
@@ -22,7 +22,7 @@ struct TaskResult {
   std::optional<double> time_ms;
 };
 
-/// The answer of a unit.
+/// The result of a unit.
 struct UnitResult {
   std::string failure;  ///< why the pair could not be matched; then nothing else is filled
   double resolution = 0;
@@ -33,30 +33,31 @@ struct UnitResult {
   std::vector<std::optional<double>> frame_share;  ///< at each threshold
   std::vector<TaskResult> tasks;                   ///< one each
   std::vector<TaskResult> oracles;                 ///< one for each threshold
-  std::optional<TaskResult> floor;
+  std::optional<TaskResult> baseline;
 };
 
 /// Hashes of files by their paths; empty where a file cannot be read.
 using InputHashes = std::map<std::string, std::string>;
 std::string hash_of(const InputHashes& inputs, const std::string& path);
 
-/// What the answer of a unit depends on, as the name of its file.
+/// A hash of what the result of a unit depends on, as the name of its file.
 std::string unit_key(const WorkUnit& unit, const InputHashes& inputs);
 
-/// A unit with what it is worked on with.
+/// A unit with the tools to evaluate it.
 struct UnitWork {
   const WorkUnit& unit;
   const InputHashes& inputs;
   const ContentStore& store;
 };
 
-/// The table of a unit, from the store or made and stored. Throws IoError or InvalidInput.
+/// The table of a unit, read from the store or computed and stored. Throws IoError or InvalidInput.
 StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target);
 
-/// Matches, groups, scores and refines. Whatever fails is in the result, but for want of memory (std::bad_alloc). `files`: gets the files of selections and poses.
+/// Matches, groups, scores and refines. Failures are in the result, except for lack of memory (std::bad_alloc). `files`
+/// receives the files of selections and poses.
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files);
 
-/// As text, and back; what is no such text is absent.
+/// To text and back; absent for any other text.
 std::string unit_result_text(const UnitResult& result);
 std::optional<UnitResult> parse_unit_result(const std::string& text);
 

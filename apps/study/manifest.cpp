@@ -66,7 +66,7 @@ Json inputs_json(const WorkList& list, const InputHashes& inputs) {
   return json;
 }
 
-/// A pair that is matched in several ways is spoken of as the first experiment that takes it has it.
+/// A pair that is matched in several ways is described as in the first experiment that uses it.
 Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
   Json json = Json::object();
   const auto absolute = [](const std::string& file) {
@@ -91,7 +91,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
   return json;
 }
 
-/// What two calls must agree on to be the same run.
+/// What two calls must agree on to be the same study.
 std::string hash_of_experiments(const WorkList& list) {
   std::string text = compact_json(experiments_json(list));
   for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
@@ -111,7 +111,7 @@ InputHashes hash_inputs(const WorkList& list) {
       try {
         inputs[file] = content_hash(read_file(file));
       } catch (const IoError&) {
-        inputs[file] = "";  // the pair will say so
+        inputs[file] = "";  // the record of the pair reports it
       }
     }
   return inputs;
@@ -155,7 +155,7 @@ void check_same_run(const std::string& folder, const WorkList& list, const Input
     experiments = manifest.at("experiments_hash");
     data = manifest.at("inputs_hash");
   } catch (const Json::exception& error) {
-    throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
+    throw IoError(path, "", std::string("is not the manifest of a study: ") + error.what());
   }
   const BuildInfo build = build_info();
   const std::string other = version != build.version                   ? "by version " + version + " of the program"
@@ -164,7 +164,7 @@ void check_same_run(const std::string& folder, const WorkList& list, const Input
                             : data != hash_of_inputs(list, inputs)     ? "from other data"
                                                                        : "";
   if (!other.empty())
-    throw IoError(path, "", "this run was made " + other + ", expected another folder for -o (or remove this one)");
+    throw IoError(path, "", "this study was made " + other + ", expected another folder for -o (or remove this one)");
 }
 
 }  // namespace corral

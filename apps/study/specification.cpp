@@ -72,7 +72,7 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
   const std::string nearest = nearest_name(name, known);
   std::string list;
   for (const std::string& each : known) list += (list.empty() ? "" : ", ") + each;
-  table.fail(key, "nothing is called " + corral::quoted(name) + ", " +
+  table.fail(key, "nothing is named " + corral::quoted(name) + ", " +
                       (nearest.empty() ? "expected one of " + list : "did you mean " + corral::quoted(nearest) + "?"));
 }
 
@@ -85,7 +85,7 @@ void check_name(const TomlTable& table, const std::string& key, const std::strin
   if (!default_options(name)) fail_unknown(table, key, name, all_names());
 }
 
-/// Which sweep an attribute asks for. A name that is none of the program's own is a column of pairs.csv.
+/// The sweep of an attribute. A name that is not built in is a column of pairs.csv.
 Sweep sweep_of(const TomlTable& table, const std::string& attribute) {
   static const std::map<std::string, Sweep> kOwn = {{"threshold_pr", Sweep::Threshold}, {"matches", Sweep::Matches},
                                                     {"detector", Sweep::Choice},        {"descriptor", Sweep::Choice},
@@ -109,7 +109,7 @@ std::vector<StudyLevel> read_bins(const TomlTable& table) {
   for (std::size_t i = 0; i < bins.size(); ++i) {
     if (bins[i].size() != 2 || !(bins[i][0] < bins[i][1])) table.fail("bins", "expected [low, high] with low < high");
     if (!levels.empty() && bins[i][0] < levels.back().high)
-      table.fail("bins", "expected bins in order, none in another");
+      table.fail("bins", "expected ascending bins that do not overlap");
     levels.push_back(
         {labels.empty() ? bin_label(bins[i][0], bins[i][1], i + 1 == bins.size()) : labels[i], bins[i][0], bins[i][1]});
   }
@@ -143,7 +143,7 @@ std::vector<StudyLevel> read_levels(const TomlTable& table, const Experiment& ex
   for (std::size_t i = 0; i < levels.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (levels[i].label == levels[j].label)
-        table.fail(table.texts("labels").empty() ? "levels" : "labels", levels[i].label + " stands twice");
+        table.fail(table.texts("labels").empty() ? "levels" : "labels", levels[i].label + " occurs twice");
   return levels;
 }
 
@@ -247,7 +247,7 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
                                  experiment.sweep == Sweep::TableSize;
   const bool is_value_sweep = experiment.sweep != Sweep::Column && experiment.sweep != Sweep::Matches;
   for (const StudyLevel& level : info.levels) {
-    if (is_value_sweep && level.low != level.high) table.fail("bins", info.attribute + " wants levels = [..]");
+    if (is_value_sweep && level.low != level.high) table.fail("bins", info.attribute + " needs levels = [..]");
     if (is_positive_sweep && !(level.high > 0)) table.fail("levels", "expected numbers above zero");
     if (experiment.sweep == Sweep::TableSize && !(level.low == std::floor(level.low) && level.low <= 1e9))
       table.fail("levels", "found " + level.label + ", expected whole numbers of rows");
@@ -318,7 +318,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   ExperimentInfo& info = experiment.info;
   info.name = required_text(table, "name");
   if (info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") != std::string::npos)
-    table.fail("name", "expected small letters, digits, - and _ only");
+    table.fail("name", "expected lower-case letters, digits, - and _ only");
   info.title = table.text("title").value_or(info.name);
   info.figure = table.text("figure").value_or("");
   info.dataset = required_text(table, "dataset");
@@ -331,7 +331,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   for (std::size_t i = 0; i < info.methods.size(); ++i) {
     check_method(table, "groupers", info.methods[i]);
     if (std::count(info.methods.begin(), info.methods.end(), info.methods[i]) > 1)
-      table.fail("groupers", info.methods[i] + " stands twice");
+      table.fail("groupers", info.methods[i] + " occurs twice");
   }
   info.threshold_pr = table.number("threshold_pr").value_or(info.threshold_pr);
   if (!(info.threshold_pr >= 0)) table.fail("threshold_pr", "expected a length of at least zero");
@@ -356,7 +356,7 @@ Experiment read_experiment(const std::string& name_or_path) {
   if (found != embedded_experiments().end()) return parse_experiment(found->first, found->second);
   const std::string nearest = nearest_name(name_or_path, built_in_experiments());
   throw IoError(name_or_path, "",
-                "is neither a file nor an experiment of the program" +
+                "is neither a file nor a built-in experiment" +
                     (nearest.empty() ? ", 'corral evaluate --help' lists those"
                                      : ", did you mean " + corral::quoted(nearest) + "?"));
 }

@@ -8,22 +8,22 @@
 #include <vector>
 
 #include "apps/pair/match_settings.h"
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 #include "kernel/options.h"
 
 namespace corral {
 
-/// Only pairs whose attribute is one of these take part; "" is an empty cell, numbers are compared as numbers.
+/// Only pairs whose attribute is one of these are used; "" is an empty cell, numbers are compared as numbers.
 struct AttributeFilter {
   std::string attribute;
   std::vector<std::string> accepted;
 };
 
-/// What the levels of an experiment are levels of.
+/// The quantity that an experiment sweeps.
 enum class Sweep {
   Column,     ///< a column of pairs.csv: each level has pairs of its own
-  Threshold,  ///< threshold_pr: the same answers, scored anew
-  Matches,    ///< matches: how many there turned out to be, over the values of a varied option
+  Threshold,  ///< threshold_pr: the same selections, scored again
+  Matches,    ///< matches: pairs are binned by their number, over the values of a varied option
   Choice,     ///< a choice of the matching: detector, descriptor, frames or normals
   Option,     ///< name.option of a grouper, detector or descriptor
   TableSize,  ///< table_size: the time of groupers on tables of so many rows
@@ -39,14 +39,14 @@ struct Experiment {
   OptionsByName options;                  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)
   std::string varied;                     ///< of Sweep::Matches: "harris.radius_pr"; empty if there is none
   std::vector<double> varied_values;
-  int repeats = 1;  ///< of methods that draw; of all methods for times
+  int repeats = 1;  ///< of stochastic groupers; of all groupers for times
   std::uint64_t seed = 1;
-  bool dense = false;  ///< lay the surfaces on each other too
+  bool dense = false;  ///< also refine on the whole surfaces
   int tables = 1;      ///< of Sweep::TableSize: pairs whose tables are timed
 };
 
-/// Reads an experiment: a file, or the name of one that the program carries (see built_in_experiments). Throws IoError naming
-/// file, line and key; an unknown key or name comes with the nearest one.
+/// Reads an experiment: a file, or the name of a built-in one (see built_in_experiments). Throws IoError naming file, line
+/// and key, with a suggestion for an unknown key or name.
 Experiment read_experiment(const std::string& name_or_path);
 /// The same of text that is in memory; `path` is for the messages.
 Experiment parse_experiment(const std::string& path, const std::string& text);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a killed call left half written: of all finished files the names end in .csv or .json, or have no ending.
+/// Removes files that a killed call left unfinished: the names of finished ones end in .csv or .json, or have no ending.
 void remove_unfinished(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> unfinished;
@@ -38,7 +38,7 @@ bool has_failed(const UnitResult& result) {
          std::any_of(result.tasks.begin(), result.tasks.end(), [](const TaskResult& task) { return !task.selected; });
 }
 
-/// Whether an answer has all that the unit asks for.
+/// Whether a result has everything that the unit requires.
 bool fits(const UnitResult& result, const WorkUnit& unit) {
   if (!result.failure.empty()) return true;
   const std::size_t thresholds = result.has_truth ? unit.thresholds_pr.size() : 0;
@@ -50,13 +50,13 @@ bool fits(const UnitResult& result, const WorkUnit& unit) {
   };
   return result.tasks.size() == unit.tasks.size() && result.true_matches.size() == thresholds &&
          result.frame_share.size() == thresholds && result.oracles.size() == thresholds &&
-         result.floor.has_value() == result.has_truth &&
+         result.baseline.has_value() == result.has_truth &&
          std::all_of(result.tasks.begin(), result.tasks.end(), is_whole) &&
          std::all_of(result.oracles.begin(), result.oracles.end(), is_whole) &&
-         (!result.floor || is_whole(*result.floor));
+         (!result.baseline || is_whole(*result.baseline));
 }
 
-/// The units of a run on their way from work to files.
+/// Evaluates the units of a study and writes their files.
 class Runner {
  public:
   Runner(const WorkList& list, const InputHashes& inputs, const StudySettings& settings,
@@ -98,7 +98,7 @@ class Runner {
     return (folder_ / "units" / (unit_key(unit, inputs_) + ".json")).string();
   }
 
-  /// An answer that is whole and fits the unit.
+  /// A stored result that is complete and fits the unit.
   static std::optional<UnitResult> stored(const std::string& file, const WorkUnit& unit) {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) return std::nullopt;
@@ -106,7 +106,7 @@ class Runner {
     return result && fits(*result, unit) ? result : std::nullopt;
   }
 
-  /// The unit's own file comes last: where it is, the others are.
+  /// The unit's own file is written last: where it exists, the others do.
   UnitResult evaluate(const WorkUnit& unit) const {
     std::vector<FileContent> files;
     UnitResult result = evaluate_unit({unit, inputs_, store_}, files);
@@ -138,11 +138,11 @@ FolderLock::FolderLock(const std::string& folder) {
   const std::string path = folder + "/lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) throw IoError(path, "", "cannot be created");
-  // A call that was killed a moment ago may still be on its way out.
+  // A call that was killed a moment ago may not have ended yet.
   for (int attempt = 0; attempt < 40; ++attempt, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
   ::close(descriptor_);
-  throw IoError(folder, "", "another call is working on this run, expected to be alone");
+  throw IoError(folder, "", "another call is working on this study, expected only one at a time");
 }
 
 FolderLock::~FolderLock() { ::close(descriptor_); }
@@ -159,7 +159,7 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   std::error_code ignored;
   if (!fs::exists(manifest, ignored)) write_file(manifest, manifest_text(list, inputs, {}, settings.command_line));
   const std::vector<UnitResult> results = Runner(list, inputs, settings, observer).run(settings.jobs);
-  RunFolder run{settings.run, {}, {}, assemble_records(list, results)};
+  StudyFolder run{settings.run, {}, {}, assemble_records(list, results)};
   for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
   const StudyOutcome outcome{results.size(),
                              static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),

@@ -12,15 +12,15 @@
 
 namespace corral {
 
-/// Times the groupers of the one experiment of the list, which sweeps table_size, and writes a run's folder with records.csv
-/// and time.csv. Everything runs in the calling thread, the repeats of the methods by turns, each after a call to warm up. A
-/// call under a millisecond is repeated 100 times for one time. Tables are rows drawn from the matches of the first pairs that
-/// have enough of them, else of those that have most; a size that none has is left out.
+/// Times the groupers of the only experiment of the list, which sweeps table_size, and writes a study folder with records.csv
+/// and time.csv. Everything runs in the calling thread, the repeats of the groupers in turn, each after a call to warm up. A
+/// call that takes less than a millisecond is repeated 100 times for one time. Tables are rows drawn from the matches of the
+/// first pairs that have enough of them, else of those that have most; a size that none has is left out.
 /// Throws    IoError as run_study does, or if no pair has a table of any of the sizes.
 std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
                                     const std::function<void(const std::string& what)>& observer);
 
-/// So many rows of a table, drawn without repetition, in their order.
+/// `count` rows of a table, drawn without replacement, in their order.
 CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::uint64_t seed);
 
 }  // namespace corral

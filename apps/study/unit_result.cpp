@@ -72,7 +72,7 @@ UnitResult unit_of(const Json& json) {
   for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
   for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
   for (const Json& oracle : json.at("oracles")) result.oracles.push_back(task_of(oracle));
-  if (!json.at("floor").is_null()) result.floor = task_of(json.at("floor"));
+  if (!json.at("baseline").is_null()) result.baseline = task_of(json.at("baseline"));
   return result;
 }
 
@@ -93,7 +93,7 @@ std::string unit_result_text(const UnitResult& result) {
               {"frame_share", frames},
               {"tasks", tasks},
               {"oracles", oracles},
-              {"floor", result.floor ? to_json(*result.floor) : Json(nullptr)}}
+              {"baseline", result.baseline ? to_json(*result.baseline) : Json(nullptr)}}
              .dump(-1, ' ', false, Json::error_handler_t::replace) +
          "\n";
 }

@@ -35,7 +35,7 @@ Dataset find_dataset(const std::string& data_folder, const std::string& name, co
   }
   std::error_code ignored;
   if (!fs::is_directory(data_folder, ignored))
-    throw IoError(data_folder, "", "is no folder, expected a data set or a folder of such");
+    throw IoError(data_folder, "", "is not a folder, expected a data set or a folder of data sets");
   std::vector<std::string> present;
   for (const auto& entry : fs::directory_iterator(data_folder, ignored))
     if (is_dataset(entry.path())) present.push_back(entry.path().filename().string());
@@ -43,7 +43,7 @@ Dataset find_dataset(const std::string& data_folder, const std::string& name, co
   std::string list;
   for (const std::string& each : present) list += (list.empty() ? "" : ", ") + each;
   throw IoError(data_folder, "",
-                "has no data set " + corral::quoted(name) + ", which the experiment " + experiment + " is about; " +
+                "has no data set " + corral::quoted(name) + ", which the experiment " + experiment + " uses; " +
                     (list.empty() ? "expected a folder with dataset.toml in it" : "it has " + list));
 }
 
@@ -61,7 +61,7 @@ bool draws(const std::string& method) {
   return std::any_of(options.begin(), options.end(), [](const OptionValue& option) { return option.name == "seed"; });
 }
 
-/// Where the selections of a way to match and to group lie: the paper's way has a short name.
+/// The folder of the selections of one setting of matching and grouping: the paper's has a short name.
 std::string setting_label(const Experiment& experiment, const WorkUnit& unit, const StudyLevel& level) {
   std::string text;
   for (const Grouper& grouper : groupers())
@@ -79,7 +79,7 @@ std::string setting_label(const Experiment& experiment, const WorkUnit& unit, co
          content_hash(text + std::to_string(experiment.seed) + matching_text(matching)).substr(0, 8);
 }
 
-/// Collects units so that what several experiments need is there once.
+/// Collects units so that those that several experiments need exist once.
 class Collector {
  public:
   Collector(std::vector<Experiment> experiments, std::string data_folder) : data_folder_(std::move(data_folder)) {
@@ -88,7 +88,7 @@ class Collector {
     list_.experiments = std::move(experiments);
     for (std::size_t i = 1; i < list_.experiments.size(); ++i)
       if (list_.experiments[i].info.name == list_.experiments[i - 1].info.name)
-        throw IoError(list_.experiments[i].info.name, "", "two experiments have this name, expected each once");
+        throw IoError(list_.experiments[i].info.name, "", "two experiments have this name, expected each name once");
   }
 
   WorkList collect() {
@@ -210,7 +210,7 @@ class Collector {
     list_.samples.push_back(std::move(sample));
   }
 
-  /// All repeats of a method that draws, one call of any other.
+  /// All repeats of a stochastic grouper, one call of any other.
   static std::vector<GroupingTask> tasks_of(const Experiment& experiment, const std::string& method,
                                             const StudyLevel& level, const std::string& pair) {
     const bool is_random = draws(method);

@@ -120,7 +120,7 @@ bool is_candidate(const Eigen::VectorXd& response, const Indices& ring, int vert
   });
 }
 
-/// The candidates, given best first, of which none is within `radius` of a better one that stays.
+/// The candidates, given best first, that are not within `radius` of a better one that is kept.
 Indices spread(const Points& vertices, const Indices& candidates, double radius) {
   const PointIndex index(vertices(candidates, Eigen::all));
   std::vector<char> dropped(candidates.size(), 0);

@@ -17,7 +17,7 @@ PointGrid grid_for(const Points& points, int k) {
   return PointGrid::with_occupancy(points, 0.65 * k);
 }
 
-/// By row, each to its side.
+/// By row, each oriented.
 Points turned(const NearestPlanes& fits, const Mesh& mesh, const PointGrid& grid, const NormalOptions& options) {
   const Points sides = options.side_of_faces ? area_weighted_normals(mesh) : Points();
   Points normals(mesh.vertices.rows(), 3);

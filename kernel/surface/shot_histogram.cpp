@@ -17,7 +17,7 @@ namespace corral::HWY_NAMESPACE {
 namespace {
 
 constexpr int kCosines = 11;
-// While votes are counted a volume takes 16 places, so that the bin beside along an axis is a bit away.
+// While votes are counted a volume has 16 places, so that the index of the neighbouring bin along an axis differs by one bit.
 constexpr int kVolume = 16, kAbove = kVolume, kShell = 2 * kAbove, kSector = 2 * kShell, kPlaces = 8 * kSector;
 
 /// Some vertices: the bin that each lies in, those beside it where a bit does not tell, and what each of them gets.
@@ -27,9 +27,9 @@ struct Votes {
   alignas(64) std::int32_t own[kMost];
   alignas(64) std::int32_t beside_cosine[kMost];
   alignas(64) std::int32_t beside_azimuth[kMost];
-  alignas(64) double share[kAxes][kMost];  // what the bin beside gets
-  alignas(64) double rest[kMost];          // what the own bin gets of the four axes
-  alignas(64) double kept[kAxes][kMost];   // what it gets of each (only for products)
+  alignas(64) double share[kAxes][kMost];  // share of the neighbouring bin
+  alignas(64) double rest[kMost];          // share of the vertex's own bin over the four axes
+  alignas(64) double kept[kAxes][kMost];   // its share of each (only for products)
 
   void silence(std::size_t i) {
     rest[i] = 0;
@@ -144,7 +144,7 @@ class Voter {
   HWY_INLINE Lanes along(int axis, const Lanes& x, const Lanes& y, const Lanes& z) const {
     return axes_[axis][0] * x + axes_[axis][1] * y + axes_[axis][2] * z;
   }
-  /// `share`: what each axis takes from the own bin, `given`: what of it the bin beside gets.
+  /// `share`: what each axis takes from the vertex's own bin, `given`: the part that the neighbouring bin gets.
   HWY_INLINE void store_shares(const Lanes (&share)[Votes::kAxes], const Lanes (&given)[Votes::kAxes], std::size_t at,
                                Votes& votes) const {
     for (int axis = 0; axis < Votes::kAxes; ++axis) given[axis].store(&votes.share[axis][at]);
@@ -159,7 +159,7 @@ class Voter {
   bool is_product_;
 };
 
-/// Of the histogram: vertices side by side fall into the same bins, and need not wait for each other.
+/// Copies of the histogram: neighbouring vertices fall into the same bins, and need not wait for each other.
 constexpr std::size_t kCopies = 4;
 struct Histograms {
   alignas(64) double bins[kCopies][kPlaces] = {};
@@ -193,7 +193,7 @@ void add_products(const Votes& votes, std::size_t count, Histograms& histograms)
 HWY_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histograms) {
   double values[kShotSize + kVolume];
   for (int volume = 0; volume < kPlaces / kVolume; ++volume)
-    for (int i = 0; i < kVolume; i += kLanes) {  // what stands behind a volume is written over by the next
+    for (int i = 0; i < kVolume; i += kLanes) {  // the excess of a volume is overwritten by the next one
       const auto load = [&](int copy) HWY_ATTR { return Lanes::load(&histograms.bins[copy][volume * kVolume + i]); };
       ((load(0) + load(1)) + (load(2) + load(3))).store(&values[volume * kCosines + i]);
     }

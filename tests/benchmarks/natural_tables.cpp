@@ -63,7 +63,7 @@ CorrespondenceSet spread(const CorrespondenceSet& matches, int count) {
 
 double inlier_ratio(const CorrespondenceSet& matches, const RigidTransform& truth) {
   double inliers = 0;
-  for (const bool is_inlier : label_inliers(matches, truth, kInlier_pr)) inliers += is_inlier;
+  for (const bool is_inlier : label_correct(matches, truth, kInlier_pr)) inliers += is_inlier;
   return inliers / matches.size();
 }
 

@@ -28,26 +28,26 @@ RigidTransform turn(double radians, const Eigen::Vector3d& axis) {
 TEST(LabelInliers, ThresholdIsInclusive) {
   CorrespondenceSet matches =
       table_of_points({{0, 0, 0}, {0, 0, 0}, {1, 1, 1}}, {{0, 4, 0}, {0, 4.0000001, 0}, {1, 1, 1}});
-  EXPECT_THAT(label_inliers(matches, {}, 4), ElementsAre(true, false, true));
-  EXPECT_THAT(label_inliers(matches, {}, 0), ElementsAre(false, false, true));
+  EXPECT_THAT(label_correct(matches, {}, 4), ElementsAre(true, false, true));
+  EXPECT_THAT(label_correct(matches, {}, 0), ElementsAre(false, false, true));
   matches.resolution = 0.5;
-  EXPECT_THAT(label_inliers(matches, {}, 8), ElementsAre(true, false, true));
-  EXPECT_THAT(label_inliers(matches, {}, 7.9), ElementsAre(false, false, true));
+  EXPECT_THAT(label_correct(matches, {}, 8), ElementsAre(true, false, true));
+  EXPECT_THAT(label_correct(matches, {}, 7.9), ElementsAre(false, false, true));
 }
 
 TEST(LabelInliers, SourceIsMovedByTheTruth) {
   RigidTransform truth = turn(kPi / 2, Eigen::Vector3d::UnitZ());
   truth.translation << 10, 0, 0;
   const CorrespondenceSet matches = table_of_points({{1, 0, 0}, {10, 1, 0}}, {{10, 1, 0}, {1, 0, 0}});
-  EXPECT_THAT(label_inliers(matches, truth, 0.001), ElementsAre(true, false));
+  EXPECT_THAT(label_correct(matches, truth, 0.001), ElementsAre(true, false));
 }
 
 TEST(LabelInliers, RefusesBadInput) {
   CorrespondenceSet matches = table_of_points({{0, 0, 0}}, {{0, 0, 0}});
-  for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) EXPECT_THROW(label_inliers(matches, {}, bad), InvalidInput);
-  EXPECT_THAT(label_inliers(table_of_points({}, {}), {}, 4), IsEmpty());
+  for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) EXPECT_THROW(label_correct(matches, {}, bad), InvalidInput);
+  EXPECT_THAT(label_correct(table_of_points({}, {}), {}, 4), IsEmpty());
   matches.target_points(0, 0) = std::nan("");
-  EXPECT_THROW(label_inliers(matches, {}, 4), InvalidInput);
+  EXPECT_THROW(label_correct(matches, {}, 4), InvalidInput);
 }
 
 TEST(ScoreGrouping, CountsAndRatios) {

@@ -26,7 +26,7 @@ std::vector<StudyLevel> bins(const std::vector<double>& edges) {
   return levels;
 }
 
-ExperimentInfo& add_info(RunFolder& run, const std::string& name, const std::string& dataset) {
+ExperimentInfo& add_info(StudyFolder& run, const std::string& name, const std::string& dataset) {
   ExperimentInfo& info = run.experiments.emplace_back();
   info.name = info.title = info.axis = name;
   info.attribute = name;
@@ -47,7 +47,7 @@ StudyLevel step(double value) { return {to_text(value), value, value}; }
 
 StudyLevel bin(double low, double high) { return {"[" + to_text(low) + "," + to_text(high) + ")", low, high}; }
 
-void add_experiment(RunFolder& run, const SimulatedExperiment& experiment) {
+void add_experiment(StudyFolder& run, const SimulatedExperiment& experiment) {
   add_info(run, experiment.name, experiment.dataset).levels = experiment.levels;
   for (const StudyLevel& level : experiment.levels)
     for (int pair = 0; pair < experiment.pairs; ++pair)
@@ -78,7 +78,7 @@ void add_experiment(RunFolder& run, const SimulatedExperiment& experiment) {
       }
 }
 
-void add_times(RunFolder& run, const std::vector<double>& sizes,
+void add_times(StudyFolder& run, const std::vector<double>& sizes,
                const std::function<double(const std::string& method, double size)>& time_ms) {
   ExperimentInfo& info = add_info(run, "time", "u3or");
   for (const double size : sizes) info.levels.push_back(step(size));
@@ -98,8 +98,8 @@ void add_times(RunFolder& run, const std::vector<double>& sizes,
       }
 }
 
-RunFolder simulated_study(std::uint64_t seed, int pairs) {
-  RunFolder run;
+StudyFolder simulated_study(std::uint64_t seed, int pairs) {
+  StudyFolder run;
   const auto add = [&](const std::string& name, const std::string& dataset, const std::vector<StudyLevel>& levels,
                        double inlier_ratio) {
     SimulatedExperiment experiment{name, dataset, levels, pairs, name == "threshold", inlier_ratio, {}};
@@ -126,7 +126,7 @@ RunFolder simulated_study(std::uint64_t seed, int pairs) {
   return run;
 }
 
-void write_run(const RunFolder& run) {
+void write_run(const StudyFolder& run) {
   nlohmann::ordered_json manifest = {{"experiments", nlohmann::json::array()}, {"pairs", nlohmann::json::object()}};
   for (const ExperimentInfo& info : run.experiments) {
     nlohmann::json levels = nlohmann::json::array();

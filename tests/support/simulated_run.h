@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 
 namespace corral::testing {
 
@@ -32,16 +32,16 @@ StudyLevel step(double value);
 StudyLevel bin(double low, double high);  ///< "[low,high)"
 
 /// Adds the experiment's levels and records, in the order of a work list.
-void add_experiment(RunFolder& run, const SimulatedExperiment& experiment);
+void add_experiment(StudyFolder& run, const SimulatedExperiment& experiment);
 
 /// Adds an experiment of times: one pair, `repeats` records a size.
-void add_times(RunFolder& run, const std::vector<double>& sizes,
+void add_times(StudyFolder& run, const std::vector<double>& sizes,
                const std::function<double(const std::string& method, double size)>& time_ms);
 
 /// All eight experiments with the paper's levels, noisy scores from the seed, and few pairs at each level.
-RunFolder simulated_study(std::uint64_t seed, int pairs = 12);
+StudyFolder simulated_study(std::uint64_t seed, int pairs = 12);
 
 /// manifest.json, records.csv and files of selections, as corral evaluate leaves them.
-void write_run(const RunFolder& run);
+void write_run(const StudyFolder& run);
 
 }  // namespace corral::testing

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 #include "kernel/surface/mesh/mesh.h"
 
 namespace corral::testing {

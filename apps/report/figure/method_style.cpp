@@ -11,7 +11,7 @@ const std::map<std::string, MethodStyle> kKnown = {
     {"ransac", {"RANSAC", "#0072b2", 9, ""}},    {"st", {"ST", "#cc79a7", 11, "(14,4)"}},
     {"gc", {"GC", "#009e73", 13, ""}},           {"hough", {"3DHV", "#56b4e9", 15, "(8,4,2,4)"}},
     {"si", {"SI", "#d55e00", 6, "(4,3)"}},       {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
-    {"floor", {"floor", "#888888", 0, "(10,5)"}}};
+    {"baseline", {"baseline", "#888888", 0, "(10,5)"}}};
 
 // For groupers that are not in the paper: colours and markers that none of the seven has.
 const std::vector<std::string> kFurtherColors = {"#882255", "#999933", "#332288", "#aa4499",
@@ -35,6 +35,6 @@ std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>&
   return styles;
 }
 
-bool is_bound(const std::string& method) { return method == "oracle" || method == "floor"; }
+bool is_bound(const std::string& method) { return method == "oracle" || method == "baseline"; }
 
 }  // namespace corral

@@ -16,11 +16,11 @@ struct MethodStyle {
 };
 
 /// A style for each of these groupers. The paper's seven always have the same one, in the colours of Okabe and Ito, which
-/// colour-blind readers can tell apart; "oracle" and "floor" are grey. Others get theirs in the order of their names, which
+/// colour-blind readers can tell apart; "oracle" and "baseline" are grey. Others get theirs in the order of their names, which
 /// are also their labels; from the ninth on styles repeat.
 std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>& methods);
 
-/// True for "oracle" and "floor", which bound what a grouper can do but are not groupers.
+/// True for "oracle" and "baseline", which bound what a grouper can do but are not groupers.
 bool is_bound(const std::string& method);
 
 }  // namespace corral

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page was written with, and the few words that all its parts share.
+// The data of the page, and helpers for all its parts.
 'use strict';
 
 const data = JSON.parse(document.getElementById('data').textContent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A pair in 3D: the two surfaces, the matches that one grouper or two kept, right ones, wrong ones and missed ones.
+// A pair in 3D: the two surfaces, the matches that one or two groupers kept, correct, incorrect and missed ones.
 'use strict';
 
 const pairView = (() => {
@@ -9,12 +9,12 @@ const pairView = (() => {
   const state = {scene: null, experiment: null, level: null};
   let renderer = null, camera, controls, halves = [], stale = false, home = 1;
 
-  /// Within how many pr a match was right for the records of a level.
+  /// The threshold (pr) of a correct match in the records of a level.
   const thresholdOf = (experiment, level) =>
       experiment.attribute === 'threshold_pr' ? Number(level) : experiment.threshold_pr;
 
-  /// Looks a scan into its face, and any other surface as its source stands (without a truth: as it stands itself),
-  /// along its z with y upwards: the motion from the target to the screen.
+  /// The motion from the target to the screen: a scan is seen from its sensor, any other surface in the orientation of its
+  /// source (without a truth: in its own), along z with y upwards.
   function viewOf(scene) {
     const mesh = data.meshes[scene.target], sum = [0, 0, 0];
     mesh.directions.forEach((value, i) => {
@@ -33,12 +33,12 @@ const pairView = (() => {
 
   const poseOf = (scene, method, stage) => stage === 'truth' ? scene.truth : (scene.poses[method] || {})[stage] || null;
 
-  /// Where the two surfaces go on the screen: motions of source and target, and the source's place for its matches.
+  /// The positions of the two surfaces on the screen: motions of source and target, and of the source's matches.
   function arrange(scene, method, aspect) {
     const source = data.meshes[scene.source], target = data.meshes[scene.target];
     const toScreen = viewOf(scene), pose = poseOf(scene, method, byId('stage').value);
     if (byId('layout').value === 'aligned') return {target: toScreen, source: pose && composed(toScreen, pose)};
-    // Side by side the source is turned as the truth has it (or else as it is), so that like lies beside like.
+    // Side by side the source has its true orientation (without a truth its own), so that both look alike.
     const turned = turnOnly(composed(turnOnly(toScreen), turnOnly(scene.truth || identity)));
     const a = boxOf(moved(source.points, turned)), b = boxOf(moved(target.points, toScreen));
     const gap = 0.2 * Math.min(a.size[0] + b.size[0], a.size[1] + b.size[1]);
@@ -62,7 +62,7 @@ const pairView = (() => {
       say('wrong', 'wrong');
       say('missed', 'missed');
     } else
-      parts.push(`${groups.kept.length} kept, no truth to judge them · `);
+      parts.push(`${groups.kept.length} kept, not judged without a truth · `);
     const stage = byId('stage').value;
     if (record && isNumber(record[`${stage}_mean_error_pr`]))
       parts.push(`mean error ${fixed(record[`${stage}_mean_error_pr`], 2)} pr · `);
@@ -142,7 +142,7 @@ const pairView = (() => {
     const canvas = byId('view'), width = canvas.clientWidth / Math.max(1, halves.length);
     renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
     renderer.setScissorTest(false);
-    renderer.setClearColor(halves.length > 1 ? 0xdfe3e7 : 0xffffff);  // what stays of it parts the halves
+    renderer.setClearColor(halves.length > 1 ? 0xdfe3e7 : 0xffffff);  // visible as a line between the halves
     renderer.clear();
     renderer.setScissorTest(true);
     renderer.setClearColor(0xffffff);
@@ -195,7 +195,7 @@ const pairView = (() => {
     canvas.addEventListener('mousedown', () => canvas.focus({preventScroll: true}));
     canvas.addEventListener('focus', () => {
       controls.noZoom = false;
-    });  // a wheel that only passes by scrolls the page
+    });  // else the wheel scrolls the page
     canvas.addEventListener('blur', () => {
       controls.noZoom = true;
     });
@@ -213,7 +213,7 @@ const pairView = (() => {
     tick();
   }
 
-  /// As long as it must be to tell the scenes apart.
+  /// As long as needed to tell the scenes apart.
   function nameOf(scene) {
     const parts = [scene.pair, scene.dataset, data.runs[scene.run].folder, scene.selection];
     const same = count => scenes
@@ -243,7 +243,7 @@ const pairView = (() => {
     byId('pair-view').hidden = !scene || Boolean(scene.problem);
     if (!scene || scene.problem) {
       byId('pair-note').textContent = record.selection === '' ?
-          `${record.pair}: the run kept no selections of it (${record.status}).` :
+          `${record.pair}: no selections in the study (${record.status}).` :
           scene ? `${record.pair} cannot be drawn: ${scene.problem}` :
                   `${record.pair} is not among the ${
                       scenes.length} pairs whose surfaces this page carries; its matches and selections are in ${

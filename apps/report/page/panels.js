@@ -56,7 +56,7 @@ const panels = (() => {
     };
   }
 
-  // Arrows walk through the points of a panel, Enter opens one, Escape resets the zoom.
+  // Arrows move through the points of a panel, Enter opens one, Escape resets the zoom.
   function addKeys(chart, describe) {
     let series = 0, column = -1;
     chart.canvas.addEventListener('keydown', event => {
@@ -164,7 +164,7 @@ const panels = (() => {
     return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${
                experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +
         `${sum(perLevel, 'excluded')} excluded (fewer than ${
-               counted(experiment.least_true_matches, 'right match', 'right matches')}); ` +
+               counted(experiment.least_true_matches, 'correct match', 'correct matches')}); ` +
         `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
   }
 

@@ -86,6 +86,6 @@
         records.find(r => r.run === first.run && r.selection === first.selection && !bounds.includes(r.method)), false);
   else {
     byId('pair-view').hidden = true;
-    byId('pair-note').textContent = 'This page carries no pair in 3D.';
+    byId('pair-note').textContent = 'This page has no pair in 3D.';
   }
 })();

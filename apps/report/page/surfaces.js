@@ -59,7 +59,7 @@ const surfaces = (() => {
     return scene;
   }
 
-  /// What is right is unknown without a truth; then all that was kept counts as "kept".
+  /// Without a truth it is unknown which matches are correct; then all selected ones are "kept".
   function split(scene, method, threshold) {
     const groups = {right: [], wrong: [], missed: [], kept: []};
     for (let row = 0; row < scene.matches; ++row) {

@@ -123,7 +123,7 @@ void FeatureFilter::choose_seeds(int row, FilterScratch& scratch, Query& query) 
   best_of_lanes(scratch.tops.data() + offset(row, panels_, kFloatLanes), panels_ * kFloatLanes, best, at);
   for (int& place : at) {
     const float* const members = scores + column_of(place, 0);
-    int top = 0;  // by arithmetic: which of them it is cannot be guessed
+    int top = 0;  // without a branch: it could not be predicted
     for (int member = 1; member < kGroupMembers; ++member)
       top += (members[member * kFloatLanes] > members[top * kFloatLanes]) * (member - top);
     place = column_of(place, top);

@@ -11,7 +11,7 @@
 namespace corral {
 namespace {
 
-/// So many of the rows 0 .. rows - 1, ascending: selection sampling, one draw for each row.
+/// `count` of the rows 0 .. rows - 1, ascending: selection sampling, one draw for each row.
 Indices random_rows(int rows, int count, std::uint64_t seed) {
   RandomStream random(seed);
   Indices kept;

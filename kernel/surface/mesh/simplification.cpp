@@ -40,7 +40,7 @@ Clusters cluster(const Points& vertices, double size) {
 }
 
 Clusters cluster_to(const Points& vertices, int most_vertices) {
-  // Cells that a surface meets fall with the square of their size: begin fine, and step by that law.
+  // The number of cells that a surface meets falls with the square of their size: begin fine, and step by that law.
   const double diagonal = bounding_box(vertices).diagonal();
   double size = std::max({diagonal / std::sqrt(most_vertices) / 3, diagonal / (1 << 20), kLeastSize});
   Clusters clusters = cluster(vertices, size);
@@ -81,7 +81,7 @@ Points unit_normals(const Points& sums, const Points& areas, const Mesh& coarse)
   return normals;
 }
 
-/// Clustering turns slivers over: back, so that every face looks where its corners do.
+/// Clustering can reverse slivers: reverses them back, so that every face agrees with the normals of its corners.
 void turn_to_normals(Triangles& triangles, const Points& vertices, const Points& normals) {
   for (Eigen::Index face = 0; face < triangles.rows(); ++face) {
     const Eigen::RowVector3d a = vertices.row(triangles(face, 0)), b = vertices.row(triangles(face, 1)),

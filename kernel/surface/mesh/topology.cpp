@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/mesh/topology.h"
 
-// OpenMesh 9 makes g++ 12 see uninitialised values at -O3 that are not there.
+// With OpenMesh 9, g++ 12 at -O3 gives false warnings of uninitialised values.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 #include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
@@ -76,7 +76,7 @@ std::vector<std::vector<Across>> neighbors_across(const Triangles& triangles) {
   return across;
 }
 
-/// Turns the triangles of each part that are wound against its majority; returns how many.
+/// Reverses the triangles of each part that are wound against its majority; returns their number.
 int orient(Triangles& triangles) {
   const auto across = neighbors_across(triangles);
   enum Turn : char { Unknown, Kept, Turned };
@@ -106,9 +106,9 @@ int orient(Triangles& triangles) {
   return count;
 }
 
-/// Builds the half-edges and counts what they cannot take.
+/// Builds the half-edges and counts the triangles that they cannot hold.
 HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
-  // OpenMesh's error stream is one for all threads, and neither its making nor its use is safe among them.
+  // OpenMesh has one error stream for all threads, and neither its creation nor its use is thread-safe.
   static std::mutex error_stream;
   const std::lock_guard<std::mutex> lock(error_stream);
   HalfEdgeMesh half;

@@ -15,8 +15,8 @@ namespace corral {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kVertices = 1500;  // of a mesh, to look where it would meet another
-constexpr int kSides = 8;                 // random sides of an object; it lies on the one on which it is lowest
+constexpr Eigen::Index kVertices = 1500;  // of a mesh, tested for contact with others
+constexpr int kSides = 8;                 // random sides of an object; it rests on the one on which it is lowest
 constexpr int kWays = 4;                  // into the heap
 constexpr double kFromAbove = 0.3;        // share of the ways that lead down
 
@@ -39,7 +39,7 @@ double shortest_way(const Points& points, const PosedSurface& to, const Eigen::V
   return shortest;
 }
 
-/// On which side an object lies: of some random ones the one on which its middle is lowest above the floor.
+/// The side on which an object rests: of some random ones the one on which its middle is lowest above the floor.
 Eigen::Matrix3d low_side(const Mesh& mesh, RandomStream& random) {
   const Eigen::Vector3d middle = vertex_centroid(mesh);
   Eigen::Matrix3d lowest;
@@ -59,7 +59,7 @@ struct Way {
   double length;
 };
 
-/// A random way of an object that lies on the floor about the middle: down from above or in over the floor.
+/// A random way of an object to the middle of the floor: down from above or along the floor.
 Way random_way(PosedSurface object, const PosedSurfaces& standing, RandomStream& random) {
   const double size = bounding_box(object.surface->mesh().vertices).diagonal(), far = 100 * size;
   const double angle = random.uniform(0, 2 * std::acos(-1.0)), aside = random.uniform(-0.35, 0.35) * size;
@@ -76,7 +76,7 @@ bool touches_any(const PosedSurface& object, const PosedSurfaces& standing) {
   return std::any_of(standing.begin(), standing.end(), [&](const PosedSurface& other) { return touch(object, other); });
 }
 
-/// As far along its way as leaves the gap, and back if that is not far enough back.
+/// Moves an object along its way up to the gap, and back if that is still too close.
 PosedSurface arrive(const Way& way, const PosedSurfaces& standing, double gap) {
   PosedSurface object = way.start;
   for (double back = gap;; back *= 2) {
@@ -94,7 +94,7 @@ PosedSurface add_object(const SurfaceTree& surface, const PosedSurfaces& standin
   PosedSurface object{&surface, {}};
   Way best{object, Eigen::Vector3d::Zero(), kInfinity};
   double nearest = kInfinity;
-  while (!(nearest < kInfinity))  // ways that lead past the heap are none
+  while (!(nearest < kInfinity))  // ways that miss the heap do not count
     for (int i = 0; i < kWays; ++i) {
       object.world_from_mesh = {low_side(surface.mesh(), random), Eigen::Vector3d::Zero()};
       const Eigen::Vector3d at = middle(object);

@@ -38,7 +38,7 @@ struct Window {
   double cells() const { return (bottom - top + 1) * (right - left + 1); }
 };
 
-/// A surface as the sensor has it before itself.
+/// A surface in the frame of the sensor.
 struct Seen {
   const SurfaceTree* surface;
   RigidTransform mesh_from_sensor;
@@ -87,7 +87,7 @@ class Scanner {
   int rows() const { return static_cast<int>(window_.bottom - window_.top) + 1; }
   int image_row(int row) const { return row + static_cast<int>(window_.top); }
 
-  /// What comes back from a row of the image; distances with noise, areas without.
+  /// The returns of a row of the image; distances with noise, areas without.
   std::vector<Hit> scan_row(int row) const {
     RandomStream random(derive_seed(options_.seed, "row " + std::to_string(image_row(row))));
     std::vector<Hit> hits;

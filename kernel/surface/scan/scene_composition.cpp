@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kWho = "compose_scenes";
 constexpr int kHeaps = 4;      // for each scene that is asked for
 constexpr int kSensors = 12;   // for each heap
-constexpr double kCoarse = 4;  // spacings of the scans to come between the rays of those that choose
+constexpr double kCoarse = 4;  // spacing of the coarse scans used for choosing, in spacings of the later scans
 constexpr double kPenalty = 0.5;
 
 /// The bin that holds a value, the last one with its end; -1 if none does.
@@ -38,7 +38,7 @@ Bins bins_of(double occlusion_share, double clutter_share) {
           bin_of(VisibilityCounts::kClutter, 100 * clutter_share)};
 }
 
-/// What a scene would add to the pairs that are there.
+/// What a scene would add to the existing pairs.
 double gain(VisibilityCounts counts, const std::vector<Visibility>& shown) {
   double sum = 0;
   for (const Visibility& pair : shown) {
@@ -51,14 +51,14 @@ double gain(VisibilityCounts counts, const std::vector<Visibility>& shown) {
   return sum;
 }
 
-/// A heap, and what each of its sensors would see.
+/// A heap, and what each of its sensors sees.
 struct Candidate {
   ComposedScene scene;
   std::vector<RangeSensor> sensors;
   std::vector<std::vector<Visibility>> shown;
 };
 
-/// How many objects a scene has: all numbers that may be, by turns.
+/// The number of objects of a scene: all allowed numbers in turn.
 int object_count(int scene, const std::vector<const SurfaceTree*>& surfaces, const CompositionOptions& options) {
   const int available = static_cast<int>(surfaces.size());
   const int least = std::min(options.least_objects, available), most = std::min(options.most_objects, available);
@@ -76,7 +76,7 @@ Indices choose_objects(int count, int of, RandomStream& random) {
   return rows;
 }
 
-/// The box around everything that stands there: its middle, and in `size` its diagonal.
+/// The box around all objects: its middle, and in `size` its diagonal.
 Eigen::Vector3d middle_of(const PosedSurfaces& scene, double& size) {
   Eigen::RowVector3d low = Eigen::RowVector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const PosedSurface& posed : scene) {

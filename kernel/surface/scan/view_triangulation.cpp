@@ -27,8 +27,8 @@ using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data
 
 constexpr const char* kWho = "triangulate_view";
 
-/// Images are told apart in steps of this many pr. Points on one ray, and the straight rim of a grid, would otherwise be
-/// pulled apart by the rounding of the projection.
+/// Images are distinguished in steps of this many pr. Points on one ray, and the straight rim of a grid, would otherwise be
+/// separated by the rounding of the projection.
 constexpr double kStepPr = 1.0 / (1 << 20);
 
 /// A triangle in the image that is this many steps high or less is a line made crooked by rounding to steps.
@@ -65,7 +65,7 @@ void check_in_front(const Points& vertices, const Camera& camera) {
     throw InvalidInput(kWho, "the sensor",
                        "at " + to_text(*camera.sensor) + " with " + std::to_string(behind) + " of " +
                            std::to_string(vertices.rows()) + " points not in front of it",
-                       "the position from which all were seen (--sensor), or the way it looked from far away "
+                       "the position from which all were seen (--sensor), or its viewing direction from far away "
                        "(--direction)");
 }
 
@@ -86,7 +86,7 @@ struct Image {
   int vertex;
 };
 
-/// One image for each place, that of the nearest vertex; ascending, so that what follows does not see the vertices' order.
+/// One image for each place, that of the nearest vertex; ascending, so that the result does not depend on the vertices' order.
 std::vector<Image> distinct_images(const Points& vertices, const Camera& camera, double step) {
   std::vector<Image> images;
   images.reserve(static_cast<std::size_t>(vertices.rows()));

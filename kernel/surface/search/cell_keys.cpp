@@ -29,8 +29,8 @@ CellAxis axis_of(const Points& points, const BoundingBox& box, int axis, double 
   return {points.col(axis).data(), box.low(axis), side, box.high(axis)};
 }
 
-/// Far outliers make more cells than keys can count: empty stretches are cut to the reach of a search, which no search can
-/// tell.
+/// Far outliers make more cells than keys can count: empty stretches are shortened to the reach of a search, which changes no
+/// result.
 std::vector<std::int64_t> cells_without_gaps(const CellAxis& axis, std::size_t count) {
   std::vector<std::int64_t> cells(count);
   for (std::size_t i = 0; i < count; ++i) cells[i] = axis.cell(axis.values[i]);
@@ -105,7 +105,7 @@ CellKeys number_cells(const Points& points, const BoundingBox& box, double& side
   }
 }
 
-/// Sorts by all but so many bits at the end, which keep their order; digits that all numbers share cost a look.
+/// Sorts by all but the last `bits` bits, which keep their order; digits that all numbers share are skipped.
 void radix_sort(std::vector<std::uint64_t>& numbers, int left_out = 0) {
   constexpr std::size_t kBuckets = std::size_t{1} << kDigitBits;
   std::vector<std::uint64_t> other(numbers.size());

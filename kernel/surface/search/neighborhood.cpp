@@ -54,7 +54,7 @@ struct PointIndex::Tree {
         map(CGAL::make_property_map(std::as_const(places).data())),
         distance(map),
         tree(Search::Tree::Splitter(), Traits(map)) {
-    if (places.empty()) return;  // a tree over nothing cannot be built, and is never asked
+    if (places.empty()) return;  // an empty tree cannot be built, and is never queried
     const auto indices = first_integers(places.size());
     tree.insert(indices.begin(), indices.end());
     tree.build();
@@ -91,7 +91,7 @@ PointIndex::~PointIndex() = default;
 std::vector<Neighbor> PointIndex::within(const Eigen::Vector3d& center, double radius) const {
   std::vector<Neighbor> neighbors;
   if (!(radius >= 0) || !std::isfinite(radius) || tree_->places.empty()) return neighbors;
-  // The tree decides with its own arithmetic: ask for a little more and decide here.
+  // The tree decides with its own arithmetic: query a little more and decide here.
   const double generous = radius * (1 + 1e-9) + std::numeric_limits<double>::min();
   std::vector<std::size_t> found;
   tree_->tree.search(std::back_inserter(found), Sphere(to_cgal(center), generous, 0.0, Traits(tree_->map)));

@@ -139,7 +139,7 @@ CellSweep::CellSweep(const PointGrid& grid, int reach) : grid_(grid), reach_(rea
 void CellSweep::around(int cell, std::vector<SlotRange>& ranges) {
   const auto& keys = grid_.keys_;
   const std::int64_t here = keys[static_cast<std::size_t>(cell)];
-  for (std::size_t i = cursors_.size(); i < offsets_.size(); ++i)  // the first call looks, the others step on
+  for (std::size_t i = cursors_.size(); i < offsets_.size(); ++i)  // the first call searches, the others advance
     cursors_.push_back(
         static_cast<std::size_t>(std::lower_bound(keys.begin(), keys.end(), here + offsets_[i]) - keys.begin()));
   std::size_t count = ranges.size();
@@ -147,7 +147,7 @@ void CellSweep::around(int cell, std::vector<SlotRange>& ranges) {
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
     const std::int64_t first = here + offsets_[i], last = first + 2 * reach_;
     const std::int64_t* at = &keys[cursors_[i]];
-    at += *at < first;  // what a step along x mostly takes, without a guess
+    at += *at < first;  // the usual case of a step along x, without a branch
     while (*at < first) ++at;
     cursors_[i] = static_cast<std::size_t>(at - keys.data());
     std::size_t after = cursors_[i];

@@ -23,16 +23,16 @@ using testing::step;
 
 using Verdicts = std::map<std::string, ClaimVerdict>;
 
-Verdicts judge(const std::vector<RunFolder>& runs) {
+Verdicts judge(const std::vector<StudyFolder>& runs) {
   Verdicts verdicts;
   for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) verdicts[verdict.id] = verdict;
   return verdicts;
 }
 
 /// One experiment in which a method's precision and recall are given by its name and level.
-RunFolder run_with(const std::string& name, const std::vector<StudyLevel>& levels,
+StudyFolder run_with(const std::string& name, const std::vector<StudyLevel>& levels,
                    const std::function<Scores(const std::string&, double)>& scores, int pairs = 6) {
-  RunFolder run;
+  StudyFolder run;
   testing::add_experiment(
       run, {name, "set", levels, pairs, name == "threshold", 0.2,
             [&](const std::string& method, const StudyLevel& level, int) { return scores(method, level.middle()); }});
@@ -54,11 +54,11 @@ TEST(Claims, AllAreRead) {
 
 TEST(Claims, AllAreDecidedOnACompleteRun) {
   const testing::ScratchFolder folder;
-  RunFolder run = testing::simulated_study(3);
+  StudyFolder run = testing::simulated_study(3);
   run.folder = folder.path();
   testing::write_run(run);
   int decided[2] = {};
-  const std::vector<RunFolder> runs = {read_run(run.folder)};
+  const std::vector<StudyFolder> runs = {read_study(run.folder)};
   for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) {
     EXPECT_NE(verdict.verdict, Verdict::Undecidable) << verdict.id << " " << verdict.parts.front().reason;
     EXPECT_TRUE(verdict.margin) << verdict.id;
@@ -71,7 +71,7 @@ TEST(Claims, AllAreDecidedOnACompleteRun) {
 }
 
 TEST(Claims, AreTheSameEachTime) {
-  const RunFolder run = testing::simulated_study(4);
+  const StudyFolder run = testing::simulated_study(4);
   const Verdicts once = judge({run}), again = judge({run});
   for (const auto& [id, verdict] : once) {
     EXPECT_EQ(verdict.changed, again.at(id).changed) << id;
@@ -98,7 +98,7 @@ TEST(Claims, DropLevelsWithFewPairs) {
 }
 
 TEST(Claims, AreUndecidableWithoutAMethod) {
-  RunFolder run = run_with("noise", {step(0.4)}, [](const std::string& method, double) {
+  StudyFolder run = run_with("noise", {step(0.4)}, [](const std::string& method, double) {
     return Scores{method == "nnsr" ? 0.9 : 0.5, 0.5};
   });
   const auto is_st = [](const StudyRecord& record) { return record.method == "st"; };
@@ -139,7 +139,7 @@ TEST(Claims, FollowTrendsOfLevels) {
 
 TEST(Claims, ThresholdsRaisePrecisionOnTheSamePairs) {
   const auto rising = [](const std::string&, double threshold) { return Scores{0.05 * threshold, 0.5}; };
-  RunFolder run = run_with("threshold", {step(1), step(2), step(3)}, rising);
+  StudyFolder run = run_with("threshold", {step(1), step(2), step(3)}, rising);
   EXPECT_NEAR(*judge({run}).at("C38").margin, 0.05, 1e-12);
   // Pairs that have no right match at 1 pr are excluded there; that they count at 2 pr is no fall of precision.
   for (StudyRecord& record : run.records)
@@ -157,7 +157,7 @@ TEST(Claims, ThresholdsRaisePrecisionOnTheSamePairs) {
 }
 
 TEST(Claims, OfTimesNeedNoFivePairs) {
-  RunFolder run;
+  StudyFolder run;
   testing::add_times(run, {250, 500, 1000, 1500, 2000, 3000}, [](const std::string& method, double size) {
     if (method == "st") return 1e-8 * size * size * size;
     if (method == "gc") return 1e-6 * size * size;
@@ -177,7 +177,7 @@ TEST(Claims, AreWeakWhereNoiseDecides) {
   std::map<int, double> draws;
   for (int i = 0; i < 100; ++i) draws[i] = stream.uniform();
   const auto run_by = [&](double lead) {
-    RunFolder run;
+    StudyFolder run;
     testing::add_experiment(
         run, {"noise", "b3r", {step(0.1)}, 20, false, 0.2, [&](const std::string& method, const StudyLevel&, int pair) {
                 return Scores{method == "nnsr" ? 0.5 + lead : draws[pair], 0.5};
@@ -216,7 +216,7 @@ TEST(Claims, OfManyPartsFailWithOne) {
 }
 
 TEST(Claims, LookAtSeveralExperiments) {
-  RunFolder run;
+  StudyFolder run;
   const auto add = [&](const std::string& name, double inlier_ratio, const std::map<std::string, double>& scores) {
     testing::add_experiment(run, {name,
                                   name,
@@ -252,7 +252,7 @@ TEST(Claims, LookAtSeveralExperiments) {
 
 TEST(Claims, PutRunsTogether) {
   const auto scores = [](const std::string& method, double) { return Scores{method == "gc" ? 0.9 : 0.4, 0.4}; };
-  const RunFolder clutter = run_with("clutter", {bin(65, 70)}, scores),
+  const StudyFolder clutter = run_with("clutter", {bin(65, 70)}, scores),
                   overlap = run_with("overlap", {bin(30, 40)}, scores);
   EXPECT_EQ(judge({clutter, overlap}).at("C68").verdict, Verdict::Holds);
   EXPECT_THROW(judge({clutter, clutter}), IoError);

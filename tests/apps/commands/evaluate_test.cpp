@@ -5,7 +5,7 @@
 #include <map>
 #include <regex>
 
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 #include "apps/runtime/stopwatch.h"
 #include "apps/study/study.h"
 #include "kernel/number_text.h"
@@ -34,7 +34,7 @@ class Evaluate : public ::testing::Test {
       if (entry.is_regular_file())
         files[std::filesystem::relative(entry.path(), place_ / run).string()] = text_of(entry.path().string());
     files["summary.csv"] = place_.text(run + "/summary.csv");
-    for (const auto& [name, pair] : read_run(place_ / run).pairs)
+    for (const auto& [name, pair] : read_study(place_ / run).pairs)
       files[name] = std::to_string(*pair.source_points) + " " + std::to_string(*pair.source_keypoints);
     files["records.csv"] = without_times(place_ / (run + "/records.csv"));
     return files;
@@ -47,7 +47,7 @@ TEST_F(Evaluate, WritesARunThatReadsBack) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 0 failed"));
   EXPECT_THAT(outcome.out, HasSubstr("precision"));
-  const RunFolder run = read_run(place_ / "run");
+  const StudyFolder run = read_study(place_ / "run");
   EXPECT_EQ(run.experiments.at(0).levels.size(), 3u);
   EXPECT_EQ(run.records.size(), 6u * (7 + 1 + 2));  // seven methods, one of them twice, and the bounds
   ASSERT_EQ(run.pairs.size(), 6u);
@@ -60,7 +60,7 @@ TEST_F(Evaluate, WritesARunThatReadsBack) {
     if (record.method == "oracle") {
       EXPECT_EQ(record.precision, 1);
     }
-    if (record.method == "floor") {
+    if (record.method == "baseline") {
       EXPECT_EQ(record.recall, 1);
     }
     if (record.selection.empty()) continue;
@@ -91,11 +91,11 @@ TEST_F(Evaluate, AgreesWithRun) {
               "uniform --set uniform.spacing_pr=2.5 --set shot.radius_pr=8 --resolution source -o ran")
           .json()["methods"];
   const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
-  const StudyPair pair = read_run(place_ / "run").pairs.at("b3r/m2-0.25");
+  const StudyPair pair = read_study(place_ / "run").pairs.at("b3r/m2-0.25");
   EXPECT_EQ(*pair.source_points, report["source"]["points"]);
   EXPECT_EQ(*pair.source_keypoints, report["source"]["keypoints"]);
   int compared = 0;
-  for (const StudyRecord& record : read_run(place_ / "run").records)
+  for (const StudyRecord& record : read_study(place_ / "run").records)
     for (const auto& method : methods)
       if (record.pair == "m2-0.25" && record.method == method["method"] && record.method != "ransac") {
         ++compared;
@@ -165,7 +165,7 @@ TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
   EXPECT_EQ(outcome.status, 4);
   EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 2 failed (records.csv says why); the run is in run"));
   int failed = 0;
-  for (const StudyRecord& record : read_run(place_ / "run").records) {
+  for (const StudyRecord& record : read_study(place_ / "run").records) {
     if (record.pair != "m1-0.25") continue;
     ++failed;
     EXPECT_THAT(to_text(record.status),
@@ -185,7 +185,7 @@ TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
 TEST_F(Evaluate, APairWithoutTruthIsGroupedButNotScored) {
   place_.put("data/b3r/pairs.csv", replaced(place_.text("data/b3r/pairs.csv"), "m1-0.05.txt", ""));
   ASSERT_EQ(evaluate("-o run").status, 0);
-  for (const StudyRecord& record : read_run(place_ / "run").records)
+  for (const StudyRecord& record : read_study(place_ / "run").records)
     if (record.pair == "m1-0.05") {
       EXPECT_TRUE(record.selected);
       EXPECT_FALSE(record.true_matches || record.precision || record.refined.mean_error_pr);
@@ -222,7 +222,7 @@ TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
 
 TEST_F(Evaluate, DenseFillsItsOwnColumns) {
   ASSERT_EQ(evaluate("-o run --dense").status, 0);
-  for (const StudyRecord& record : read_run(place_ / "run").records)
+  for (const StudyRecord& record : read_study(place_ / "run").records)
     EXPECT_EQ(record.dense.mean_error_pr.has_value(), record.refined.mean_error_pr.has_value())
         << record.pair << record.method;
 }
@@ -234,7 +234,7 @@ TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
   ASSERT_EQ(evaluate("-o run").status, 0);
   std::map<std::string, StudyRecord> last;
   int compared = 0;
-  for (const StudyRecord& record : read_run(place_ / "run").records) {
+  for (const StudyRecord& record : read_study(place_ / "run").records) {
     const std::string key = record.pair + record.method + std::to_string(record.repeat);
     const auto found = last.find(key);
     if (found != last.end() && record.method != "oracle") {
@@ -246,7 +246,7 @@ TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
     last[key] = record;
   }
   EXPECT_EQ(compared, 3 * 6 * 9);
-  for (const StudyRecord& record : read_run(place_ / "run").records)
+  for (const StudyRecord& record : read_study(place_ / "run").records)
     if (record.method == "oracle") {
       EXPECT_EQ(record.selected, record.true_matches);
     }
@@ -259,7 +259,7 @@ TEST_F(Evaluate, NumbersOfMatchesAreBinnedAsTheyTurnOut) {
                       "[options.uniform]\nspacing_pr = 2.5", "[vary.uniform]\nspacing_pr = [2.5, 6, 30]"));
   ASSERT_EQ(evaluate("-o run").status, 0);
   std::map<std::string, int> levels;
-  for (const StudyRecord& record : read_run(place_ / "run").records) {
+  for (const StudyRecord& record : read_study(place_ / "run").records) {
     EXPECT_EQ(record.level, *record.matches < 100 ? "[10,100)" : "[100,1000]");
     EXPECT_EQ(record.value, *record.matches);
     levels[record.level] += record.method == "gc";
@@ -282,7 +282,7 @@ TEST_F(Evaluate, TimesAreTakenAlone) {
   const CsvTable times = read_csv(place_ / "run/time.csv");
   EXPECT_EQ(times.rows.size(), 14u);  // no table has 100000 rows
   EXPECT_TRUE(nlohmann::json::parse(place_.text("run/manifest.json"))["is_finished"]);
-  const RunFolder run = read_run(place_ / "run");
+  const StudyFolder run = read_study(place_ / "run");
   EXPECT_EQ(run.records.size(), 28u);
   for (const StudyRecord& record : run.records) {
     EXPECT_GT(*record.time_ms, 0);
@@ -313,7 +313,7 @@ TEST(EvaluateRealData, AClutteredScene) {
                                   "gt/parasaurolophus-rs1.xf,67.8\n");
   const Outcome outcome = place.corral("evaluate occlusion --data . -o run");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const RunFolder run = read_run(place / "run");
+  const StudyFolder run = read_study(place / "run");
   EXPECT_EQ(run.records.size(), 9u);
   for (const StudyRecord& record : run.records) {
     EXPECT_EQ(record.level, "[65,70)");

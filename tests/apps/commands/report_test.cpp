@@ -70,7 +70,7 @@ void put_run(const Workplace& place, const std::string& run = "run", const std::
   place.put(run + "/records.csv", text);
 }
 
-StudyFigures figures_of(const std::vector<RunFolder>& runs) { return study_figures(results_of(runs)); }
+StudyFigures figures_of(const std::vector<StudyFolder>& runs) { return study_figures(results_of(runs)); }
 
 const Panel& panel_named(const StudyFigures& figures, const std::string& name) {
   for (const Panel& panel : figures.panels)
@@ -81,7 +81,7 @@ const Panel& panel_named(const StudyFigures& figures, const std::string& name) {
 TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   const Workplace place;
   put_run(place);
-  const StudyFigures figures = figures_of({read_run(place / "run")});
+  const StudyFigures figures = figures_of({read_study(place / "run")});
   std::vector<std::string> names;
   for (const Panel& panel : figures.panels) names.push_back(panel.name);
   EXPECT_THAT(names, ::testing::ElementsAre("noise-b3r-precision", "noise-b3r-recall", "noise-b3r-f1",
@@ -100,7 +100,7 @@ TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   EXPECT_EQ(precision.series_counts[0].cells, (std::vector<std::string>{"1", "0"}));
   const Panel& success = panel_named(figures, "noise-b3r-success");
   ASSERT_EQ(success.series.size(), 3U);
-  EXPECT_EQ(success.series[2].method, "oracle");  // the floor has no value
+  EXPECT_EQ(success.series[2].method, "oracle");  // the baseline has no value
   EXPECT_EQ(success.y_axis, "aligned within 5 pr");
 }
 
@@ -109,7 +109,7 @@ TEST(StudyFigures, CurvesAndBoxesLeaveExcludedUnjudgedAndFailedPairsOut) {
   StudyRecord unjudged = record_of("f", "ss", {});
   unjudged.true_matches.reset();
   put_run(place, "run", "{}", {unjudged});
-  const StudyFigures figures = figures_of({read_run(place / "run")});
+  const StudyFigures figures = figures_of({read_study(place / "run")});
   const Panel& curve = panel_named(figures, "noise-b3r-success-curve");
   ASSERT_EQ(curve.series.size(), 3U);
   EXPECT_EQ(curve.levels.front(), "0.5");
@@ -124,7 +124,7 @@ TEST(StudyFigures, CurvesAndBoxesLeaveExcludedUnjudgedAndFailedPairsOut) {
 TEST(StudyFigures, TimesAreMediansOnLogarithmicAxes) {
   const Workplace place;
   put_run(place);
-  RunFolder run = read_run(place / "run");
+  StudyFolder run = read_study(place / "run");
   run.experiments[0].attribute = "table_size";
   run.records.clear();
   for (const double time_ms : {1.0, 2.0, 9.0}) {
@@ -143,7 +143,7 @@ TEST(StudyFigures, TimesAreMediansOnLogarithmicAxes) {
 TEST(StudyFigures, RefuseTheSameExperimentTwice) {
   const Workplace place;
   put_run(place);
-  const RunFolder run = read_run(place / "run");
+  const StudyFolder run = read_study(place / "run");
   EXPECT_THROW(figures_of({run, run}), IoError);
 }
 
@@ -168,7 +168,7 @@ TEST(Report, ARunThatIsHalfMadeOrTwiceTheSameIsNamed) {
 }
 
 TEST(Gallery, TakesThePairInTheMiddleOfEachDataSet) {
-  RunFolder run;
+  StudyFolder run;
   const auto add = [&](const std::string& dataset, const std::string& pair, int true_matches) {
     StudyRecord record = record_of(pair, "ss", {});
     record.dataset = dataset;
@@ -181,7 +181,7 @@ TEST(Gallery, TakesThePairInTheMiddleOfEachDataSet) {
     add("b3r", pair, count);
   add("u3m", "a", 3);
   run.records.push_back(record_of("no selection", "ss", {}));
-  const std::vector<RunFolder> runs = {run};
+  const std::vector<StudyFolder> runs = {run};
   const auto names = [&](const std::vector<std::string>& asked) {
     std::vector<std::string> found;
     for (const GalleryPair& pair : choose_gallery(runs, asked)) found.push_back(pair.name());

@@ -121,16 +121,16 @@ TEST(Run, OracleAndFloorBoundTheMethods) {
   place.put_pair();
   const auto json = place.corral("run model.ply copy.ply --truth truth.txt --json").json();
   ASSERT_EQ(json["bounds"].size(), 2U);
-  const auto oracle = json["bounds"][0], floor = json["bounds"][1];
+  const auto oracle = json["bounds"][0], baseline = json["bounds"][1];
   EXPECT_EQ(oracle["method"], "oracle");
   EXPECT_EQ(oracle["selected"], json["true_matches"]);
   EXPECT_EQ(oracle["precision"], 1);
   EXPECT_EQ(oracle["recall"], 1);
   EXPECT_TRUE(oracle["time_ms"].is_null());
   EXPECT_EQ(oracle["status"], "refined");
-  EXPECT_EQ(floor["method"], "floor");
-  EXPECT_EQ(floor["selected"], json["matches"]);
-  EXPECT_EQ(floor["recall"], 1);
+  EXPECT_EQ(baseline["method"], "baseline");
+  EXPECT_EQ(baseline["selected"], json["matches"]);
+  EXPECT_EQ(baseline["recall"], 1);
   EXPECT_LT(oracle["rotation_error_deg"], 3);
   EXPECT_TRUE(place.corral("run model.ply copy.ply --json").json()["bounds"].is_null());
 }

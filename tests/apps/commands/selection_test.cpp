@@ -192,7 +192,7 @@ TEST(Refine, AnOlderPoseDoesNotStandInForNone) {
 TEST(Score, CountsAndDivides) {
   const Workplace place;
   const SyntheticProblem problem = place.put_problem();
-  const GroupingScore score = score_grouping(label_inliers(problem.matches, problem.truth, 4), problem.inliers);
+  const GroupingScore score = score_grouping(label_correct(problem.matches, problem.truth, 4), problem.inliers);
   const Outcome outcome = place.corral("score matches.csv group.csv --truth truth.txt --json");
   expect_ok(outcome);
   const auto json = outcome.json();

@@ -48,7 +48,7 @@ PairScene ball_scene() {
     const int to = i < count ? from : rows[static_cast<std::size_t>((i + 5) % count)];
     scene.source_points.row(i) = scene.source.mesh.vertices.row(from);
     scene.target_points.row(i) = scene.target.mesh.vertices.row(to);
-    scene.right.push_back(i < count);
+    scene.correct.push_back(i < count);
   }
   return scene;
 }
@@ -61,7 +61,7 @@ Indices range(int first, int last) {
 
 TEST(MatchPictures, RightIsGreenWrongIsRedMissedIsFaint) {
   PairScene scene = ball_scene();
-  const int half = static_cast<int>(scene.right.size()) / 2;
+  const int half = static_cast<int>(scene.correct.size()) / 2;
   const std::vector<Image> pictures = match_pictures(
       scene, {{"right", range(0, half)}, {"wrong", range(half, 2 * half)}, {"none", {}}, {"all", range(0, 2 * half)}},
       600);
@@ -90,7 +90,7 @@ TEST(MatchPictures, RightIsGreenWrongIsRedMissedIsFaint) {
     EXPECT_EQ(picture.width, 600);
     EXPECT_EQ(picture.height, pictures[0].height);
   }
-  scene.right.clear();
+  scene.correct.clear();
   EXPECT_GT(hues_of(match_pictures(scene, {{"known to nobody", range(0, half)}}, 600)[0]).blue, 500);
 }
 
@@ -98,7 +98,7 @@ TEST(MatchPictures, TheTruthTurnsBothSurfacesAlike) {
   PairScene scene = ball_scene();
   scene.source_points.resize(0, 3);
   scene.target_points.resize(0, 3);
-  scene.right.clear();
+  scene.correct.clear();
   const Image picture = match_pictures(scene, {{"none", {}}}, 800)[0];
   // The columns that hold a surface, left and right: the same silhouette twice.
   std::vector<int> heights;

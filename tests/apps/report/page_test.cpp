@@ -42,9 +42,9 @@ class Page : public ::testing::Test {
     put_run(folder_ / "run", experiment, cases);
   }
 
-  std::vector<RunFolder> runs() const { return {read_run(folder_ / "run")}; }
+  std::vector<StudyFolder> runs() const { return {read_study(folder_ / "run")}; }
   std::string page(const PageOptions& options = {}) const {
-    const std::vector<RunFolder> found = runs();
+    const std::vector<StudyFolder> found = runs();
     return report_page(found, results_of(found), options);
   }
   Json data() const { return data_of(page()); }
@@ -69,7 +69,7 @@ TEST_F(Page, HoldsTheMeansOfTheSummaryAndGapsWhereThereAreNone) {
   EXPECT_EQ(means[4]["failed"], 1);
   EXPECT_TRUE(means[4]["precision"].is_null());
   EXPECT_TRUE(means[8]["f1"].is_null());
-  const std::vector<RunFolder> found = runs();
+  const std::vector<StudyFolder> found = runs();
   const SummaryRow row = results_of(found).at(0).summary.at(0);
   for (const SummaryCell& cell : summary_cells(row)) {
     ASSERT_TRUE(means[0].contains(cell.name)) << cell.name;
@@ -91,7 +91,7 @@ TEST_F(Page, NamesTheMeasuresThatItShows) {
 }
 
 TEST_F(Page, ARunOfTimesHasATableOfItsOwn) {
-  std::vector<RunFolder> found = runs();
+  std::vector<StudyFolder> found = runs();
   found[0].experiments[0].attribute = "table_size";
   for (StudyRecord& record : found[0].records) {
     record.time_ms.reset();
@@ -109,7 +109,7 @@ TEST_F(Page, ARunOfTimesHasATableOfItsOwn) {
 }
 
 TEST_F(Page, SaysOfEachRecordWhetherItIsExcluded) {
-  std::vector<RunFolder> found = runs();
+  std::vector<StudyFolder> found = runs();
   found[0].experiments[0].least_true_matches = 1000000;
   found[0].records[0].true_matches.reset();
   const Json page = data_of(report_page(found, results_of(found)));
@@ -138,7 +138,7 @@ TEST_F(Page, HoldsEveryRecord) {
 TEST_F(Page, MethodsLookAsInTheFigures) {
   const Json styles = data()["styles"];
   EXPECT_EQ(styles.size(), 4u);
-  for (const auto& [method, style] : method_styles({"ss", "gc", "oracle", "floor"}))
+  for (const auto& [method, style] : method_styles({"ss", "gc", "oracle", "baseline"}))
     EXPECT_EQ(styles[method],
               Json({{"label", style.label}, {"color", style.color}, {"point", style.point}, {"dash", style.dash}}));
 }
@@ -181,8 +181,8 @@ TEST_F(Page, APairThatCannotBeDrawnIsSaidSo) {
 }
 
 /// A run of a level whose pairs have these F1 for one method, and another level that shares the first pair.
-RunFolder run_of(const std::vector<std::optional<double>>& f1) {
-  RunFolder run;
+StudyFolder run_of(const std::vector<std::optional<double>>& f1) {
+  StudyFolder run;
   run.experiments = {{"e", "", "", "d", "", "", {{"1", 1, 1}, {"2", 2, 2}}, {"gc"}, 4, 1}};
   for (std::size_t i = 0; i < f1.size(); ++i)
     for (const char* method : {"gc", "oracle"}) {
@@ -210,7 +210,7 @@ std::vector<std::string> names_of(const std::vector<SceneChoice>& scenes) {
 }
 
 TEST(ChooseScenes, MedianThenWorstThenBestThenTheOthers) {
-  const std::vector<RunFolder> runs = {run_of({0.1, 0.9, 0.5, 0.2, 0.8})};
+  const std::vector<StudyFolder> runs = {run_of({0.1, 0.9, 0.5, 0.2, 0.8})};
   // p0 is all that level 2 has.
   EXPECT_THAT(names_of(choose_scenes(runs, 9)), ElementsAre("p2", "p0", "p1", "p3", "p4"));
   EXPECT_THAT(names_of(choose_scenes(runs, 3)), ElementsAre("p2", "p0", "p1"));
@@ -219,7 +219,7 @@ TEST(ChooseScenes, MedianThenWorstThenBestThenTheOthers) {
 }
 
 TEST(ChooseScenes, OfEveryRunAndNoneWithoutSelections) {
-  std::vector<RunFolder> runs = {run_of({0.5}), run_of({0.5})};
+  std::vector<StudyFolder> runs = {run_of({0.5}), run_of({0.5})};
   EXPECT_EQ(choose_scenes(runs, 9).size(), 2u);
   for (StudyRecord& record : runs[0].records) record.selection.clear();
   ASSERT_EQ(choose_scenes(runs, 9).size(), 1u);

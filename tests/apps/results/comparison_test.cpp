@@ -19,8 +19,8 @@ using ::testing::StartsWith;
 using testing::step;
 
 /// GC is better than ST by 0.2 on every pair, NNSR by chance now above and now below ST; the others are as ST.
-RunFolder run_of(bool same_pairs) {
-  RunFolder run;
+StudyFolder run_of(bool same_pairs) {
+  StudyFolder run;
   testing::add_experiment(run, {"noise",
                                 "b3r",
                                 {step(0.1), step(0.2)},
@@ -80,7 +80,7 @@ TEST(Comparison, TestsSuccessesByMcNemar) {
 }
 
 TEST(Comparison, LeavesOutPairsThatAMethodLacks) {
-  RunFolder run = run_of(false);
+  StudyFolder run = run_of(false);
   const auto is_lost = [](const StudyRecord& record) { return record.method == "si" && record.pair == "pair0 at 0.1"; };
   run.records.erase(std::remove_if(run.records.begin(), run.records.end(), is_lost), run.records.end());
   for (StudyRecord& record : run.records)
@@ -89,7 +89,7 @@ TEST(Comparison, LeavesOutPairsThatAMethodLacks) {
 }
 
 TEST(Comparison, HasNothingToSayOfOneMethod) {
-  RunFolder run = run_of(false);
+  StudyFolder run = run_of(false);
   run.experiments[0].methods = {"gc"};
   const MethodComparison comparison = compare_methods(experiment_tables(run).at(0), measure("f1"));
   EXPECT_TRUE(comparison.tests.empty());
@@ -99,7 +99,7 @@ TEST(Comparison, HasNothingToSayOfOneMethod) {
 
 TEST(CompareCommand, PrintsTablesAndJson) {
   const testing::Workplace place;
-  RunFolder run = run_of(false);
+  StudyFolder run = run_of(false);
   run.folder = place / "run";
   testing::write_run(run);
   const testing::Outcome text = place.corral("compare run --metric precision");
@@ -119,7 +119,7 @@ TEST(CompareCommand, PrintsTablesAndJson) {
 
 TEST(ClaimsCommand, PrintsVerdictsAndSlips) {
   const testing::Workplace place;
-  RunFolder run = testing::simulated_study(5, 6);
+  StudyFolder run = testing::simulated_study(5, 6);
   run.folder = place / "run";
   testing::write_run(run);
   const testing::Outcome text = place.corral("claims run");
@@ -137,7 +137,7 @@ TEST(ClaimsCommand, PrintsVerdictsAndSlips) {
 
 TEST(ClaimsCommand, ReadsClaimsOfOnesOwn) {
   const testing::Workplace place;
-  RunFolder run = run_of(false);
+  StudyFolder run = run_of(false);
   run.folder = place / "run";
   testing::write_run(run);
   const std::string head = "methods = [\"gc\", \"st\"]\n[[claim]]\nid = \"mine\"\nparts = [{ experiment = \"noise\", ";

@@ -38,8 +38,8 @@ StudyRecord record_of(const std::string& pair, const std::string& method, int tr
   return record;
 }
 
-RunFolder run_of(const std::vector<StudyRecord>& records) {
-  RunFolder run;
+StudyFolder run_of(const std::vector<StudyRecord>& records) {
+  StudyFolder run;
   run.experiments.push_back({"noise", "", "", "b3r", "noise_pr", "", {testing::step(0.1)}, {"gc"}, 4, 1});
   run.records = records;
   return run;
@@ -74,7 +74,7 @@ TEST(LevelTable, AveragesAsTheDefinitionsSay) {
 }
 
 TEST(LevelTable, ExcludesPairsWithTooFewTrueMatches) {
-  RunFolder run = run_of({record_of("a", "gc", 2, 2, 1), record_of("b", "gc", 3, 2, 2)});
+  StudyFolder run = run_of({record_of("a", "gc", 2, 2, 1), record_of("b", "gc", 3, 2, 2)});
   run.experiments[0].least_true_matches = 3;
   const LevelTable level = experiment_tables(run).at(0).levels.at(0);
   EXPECT_EQ(level.count(PairRole::Excluded), 1);
@@ -202,7 +202,7 @@ TEST(LevelTable, ComparesSelections) {
   testing::put_text(folder / "x.csv",
                     "source_keypoint,target_keypoint,residual_pr,ss,gc,si,oracle\n"
                     "0,0,,1,1,0,0\n1,1,,1,0,0,0\n2,2,,0,1,0,1\n");
-  RunFolder run = run_of({record_of("a", "gc", 10, 1, 1), record_of("b", "gc", 10, 1, 1)});
+  StudyFolder run = run_of({record_of("a", "gc", 10, 1, 1), record_of("b", "gc", 10, 1, 1)});
   run.folder = folder.path();
   run.records[0].selection = "x.csv";
   const auto agreements = selection_agreement(run, experiment_tables(run).at(0), {"ss", "gc", "si"});

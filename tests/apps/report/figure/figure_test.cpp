@@ -36,7 +36,7 @@ Panel small_panel() {
 }
 
 TEST(MethodStyle, EveryMethodOfThePaperHasItsOwnAndStrangersToo) {
-  std::vector<std::string> methods = {"mine", "an \"odd\" one", "oracle", "floor"};
+  std::vector<std::string> methods = {"mine", "an \"odd\" one", "oracle", "baseline"};
   for (const Grouper& grouper : groupers()) methods.push_back(grouper.name);
   const auto styles = method_styles(methods);
   std::set<std::string> colors;
@@ -51,7 +51,7 @@ TEST(MethodStyle, EveryMethodOfThePaperHasItsOwnAndStrangersToo) {
   EXPECT_EQ(styles.at("hough").label, "3DHV");
   EXPECT_EQ(styles.at("mine").label, "mine");
   EXPECT_EQ(method_styles({"si"}).at("si").color, styles.at("si").color);
-  EXPECT_TRUE(is_bound("floor"));
+  EXPECT_TRUE(is_bound("baseline"));
   EXPECT_FALSE(is_bound("si"));
 }
 

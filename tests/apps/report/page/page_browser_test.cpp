@@ -48,18 +48,18 @@ struct Desk {
       }
     cases.push_back({"0.2", "broken", {}, {}, {}});  // the level in the middle is a gap
     put_run(folder / "run", experiment, cases);
-    run = read_run(folder / "run");
+    run = read_study(folder / "run");
     PageOptions options;
     options.pairs_in_3d = 3;
     options.verdicts.emplace(2);
     options.verdicts->front().verdict = Verdict::Holds;
     options.verdicts->front().text = "<b>RANSAC</b> leads";
-    const std::vector<RunFolder> runs = {run};
+    const std::vector<StudyFolder> runs = {run};
     write_file(folder / "page.html", report_page(runs, results_of(runs), options));
   }
 
   ScratchFolder folder;
-  RunFolder run;
+  StudyFolder run;
   Browser browser{800, 600};
 };
 
@@ -139,7 +139,7 @@ class PageInBrowser : public ::testing::Test {
   }
 
   static std::unique_ptr<Desk> desk_;
-  RunFolder run_;
+  StudyFolder run_;
   Browser* browser_ = nullptr;
 };
 std::unique_ptr<Desk> PageInBrowser::desk_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,11 +40,11 @@ StudyPair pair_of(const Json& json) {
   return pair;
 }
 
-/// A deeply nested value would be too much for the stack of whoever writes it out.
+/// A deeply nested value would overflow the stack when it is written.
 Json parse_manifest(const std::string& path) {
   constexpr int kDeepest = 100;
   return Json::parse(read_file(path), [&](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kDeepest) throw IoError(path, "", "not the manifest of a run: nested more than 100 deep");
+    if (depth > kDeepest) throw IoError(path, "", "is not the manifest of a study: nested more than 100 deep");
     return true;
   });
 }
@@ -70,8 +70,8 @@ const std::vector<std::string> kPoseColumns = {"method", "stage", "r11", "r12", 
 
 }  // namespace
 
-RunFolder read_run(const std::string& folder) {
-  RunFolder run;
+StudyFolder read_study(const std::string& folder) {
+  StudyFolder run;
   run.folder = folder;
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
   const std::string records = (std::filesystem::path(folder) / "records.csv").string();
@@ -83,12 +83,12 @@ RunFolder read_run(const std::string& folder) {
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));
     for (const auto& [name, pair] : manifest.at("pairs").items()) run.pairs[name] = pair_of(pair);
   } catch (const Json::parse_error& error) {
-    throw IoError(path, "byte " + std::to_string(error.byte), "no JSON, expected the manifest of a run");
+    throw IoError(path, "byte " + std::to_string(error.byte), "is not JSON, expected the manifest of a study");
   } catch (const Json::exception&) {
-    throw IoError(path, "", "not the manifest of a run, or of one that another version of the program made");
+    throw IoError(path, "", "is not the manifest of a study, or of one made by another version of the program");
   }
   if (!std::filesystem::exists(records, ignored))
-    throw IoError(folder, "", "is half made: it has no records.csv, run the command that makes it again to go on");
+    throw IoError(folder, "", "is unfinished: it has no records.csv; repeat the command that makes it to continue");
   run.records = read_records(records);
   return run;
 }

@@ -14,26 +14,26 @@ namespace corral {
 
 /// A step of the swept attribute: one value, or an interval.
 struct StudyLevel {
-  std::string label;         ///< as it stands in the experiment file, such as "0.05" or "[65,70)"
+  std::string label;         ///< as written in the experiment file, such as "0.05" or "[65,70)"
   double low = 0, high = 0;  ///< equal for a single value
   double middle() const { return (low + high) / 2; }
 };
 
-/// What a run's manifest says of one experiment.
+/// An experiment in the manifest of a study.
 struct ExperimentInfo {
   std::string name;    ///< such as "noise"
   std::string title;   ///< a few words for people
   std::string figure;  ///< panel of the paper, such as "a"; empty if it has none
   std::string dataset;
   std::string attribute;             ///< swept: a column of pairs.csv, threshold_pr, matches, or method.option
-  std::string axis;                  ///< words and unit for an axis, such as "noise (pr)"
+  std::string axis;                  ///< label and unit of an axis, such as "noise (pr)"
   std::vector<StudyLevel> levels;    ///< in order
   std::vector<std::string> methods;  ///< in order, the bounds left out
   double threshold_pr = 4;
   int least_true_matches = 1;  ///< pairs with fewer are excluded for all methods
 };
 
-/// Where the surfaces of a run's pairs are.
+/// The surfaces of a pair of a study.
 struct StudyPair {
   std::string source, target, truth;                             ///< files; the truth may be empty
   double resolution = 0;                                         ///< mesh units per pr that the pair was judged with
@@ -41,7 +41,7 @@ struct StudyPair {
 };
 
 /// A folder that `corral evaluate` made: manifest.json, records.csv, summary.csv, selections/.
-struct RunFolder {
+struct StudyFolder {
   std::string folder;
   std::vector<ExperimentInfo> experiments;
   std::map<std::string, StudyPair> pairs;  ///< by "dataset/pair"
@@ -49,10 +49,10 @@ struct RunFolder {
 };
 
 /// Reads manifest.json and records.csv. Throws IoError naming file and place.
-RunFolder read_run(const std::string& folder);
+StudyFolder read_study(const std::string& folder);
 
-/// What was matched and selected on a pair. A file of selections: source_keypoint,target_keypoint,residual_pr (empty
-/// without a truth), then one column of 0 and 1 for each method.
+/// The matches and selections of a pair. A file of selections: source_keypoint,target_keypoint,residual_pr (empty without a
+/// truth), then one column of 0 and 1 for each grouper.
 struct PairSelections {
   Indices source_keypoints, target_keypoints;  ///< vertices of the two meshes, one per match
   std::vector<double> residual_pr;             ///< |T p - p'| of each match under the true pose, or empty
@@ -62,7 +62,7 @@ PairSelections read_selections(const std::string& path);
 /// Columns of the methods in the order given.
 std::string selections_text(const PairSelections& selections, const std::vector<std::string>& methods);
 
-/// The poses that a pair's methods ended with: `<selections without .csv>.poses.csv`, lines method,stage (initial, refined,
+/// The poses of the groupers on a pair: `<selections without .csv>.poses.csv`, lines method,stage (initial, refined,
 /// dense), then the twelve numbers of [R | t] row by row.
 struct StudyPose {
   std::string method, stage;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/results/run_folder.h"
+#include "apps/results/study_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -91,11 +91,11 @@ TEST(StudyRecord, SharesAreUpToOneAndErrorsNotBelowZero) {
   EXPECT_THAT(complaint(record), HasSubstr("time_ms"));
 }
 
-TEST(RunFolder, IsNotNestedWithoutEnd) {
+TEST(StudyFolder, IsNotNestedWithoutEnd) {
   const ScratchFolder folder;
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   put_text(folder / "manifest.json", "{\"x\": " + deep + "}");
-  EXPECT_THAT(testing::io_error_of([&] { read_run(folder / ""); }), HasSubstr("nested"));
+  EXPECT_THAT(testing::io_error_of([&] { read_study(folder / ""); }), HasSubstr("nested"));
 }
 
 TEST(Selections, ReadBackWhatWasWritten) {
@@ -119,7 +119,7 @@ TEST(Poses, ReadBackWhatWasWritten) {
   EXPECT_EQ(read[1].target_from_source.rotation, pose.target_from_source.rotation);
 }
 
-TEST(RunFolder, ReadsItsManifest) {
+TEST(StudyFolder, ReadsItsManifest) {
   const ScratchFolder folder;
   put_text(folder / "records.csv", csv_line(record_columns()) + record_line({}));
   put_text(folder / "manifest.json", R"json({"experiments": [{"name": "noise", "title": "Noise", "figure": "a",
@@ -127,13 +127,13 @@ TEST(RunFolder, ReadsItsManifest) {
     "levels": [{"label": "0.05", "low": 0.05, "high": 0.05}], "methods": ["ss", "gc"], "threshold_pr": 4,
     "least_true_matches": 1}],
     "pairs": {"b3r/x": {"source": "a.ply", "target": "b.ply", "truth": "", "resolution": 0.5}}})json");
-  const RunFolder run = read_run(folder / "");
+  const StudyFolder run = read_study(folder / "");
   ASSERT_EQ(run.experiments.size(), 1u);
   EXPECT_EQ(run.experiments[0].levels[0].middle(), 0.05);
   EXPECT_EQ(run.pairs.at("b3r/x").resolution, 0.5);
   EXPECT_EQ(run.records.size(), 1u);
   put_text(folder / "manifest.json", "{}");
-  EXPECT_THROW(read_run(folder / ""), IoError);
+  EXPECT_THROW(read_study(folder / ""), IoError);
 }
 
 }  // namespace
