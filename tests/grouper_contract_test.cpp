@@ -36,8 +36,10 @@ std::vector<std::string> names() {
 INSTANTIATE_TEST_SUITE_P(Groupers, GrouperContract, ::testing::ValuesIn(names()),
                          [](const auto& test) { return test.param; });
 
-TEST(Registry, HoldsTheSevenMethodsInTheOrderOfThePaper) {
-  EXPECT_THAT(names(), ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si"));
+TEST(Registry, BeginsWithTheSevenGroupersInTheOrderOfThePaper) {
+  std::vector<std::string> first = names();
+  first.resize(7);
+  EXPECT_THAT(first, ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si"));
 }
 
 TEST(Registry, UnknownNameListsTheKnownOnes) {

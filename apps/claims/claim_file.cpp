@@ -159,8 +159,8 @@ class PartReader {
     if (part.over_pairs ? !only_pairs && part.take != Take::Mean && part.take != Take::Spearman : only_pairs)
       table_.fail("over", "'pairs' goes with mean, spearman, percentile and count; the last two need it");
     if (has_one_number(part) && asks_for_methods(part))
-      table_.fail("is", "the rule has one number and none of each method, expected 'it' in its place");
-    if (part.after > static_cast<int>(book_.methods.size())) table_.fail("after", "there are fewer methods");
+      table_.fail("is", "the rule has a single number, not one for each grouper, expected 'it' in its place");
+    if (part.after > static_cast<int>(book_.methods.size())) table_.fail("after", "there are fewer groupers");
     if (!(part.percent >= 0 && part.percent <= 100)) table_.fail("percent", "expected 0 to 100");
   }
 

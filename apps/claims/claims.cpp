@@ -174,8 +174,8 @@ PartVerdict judge_part(const Rule& rule, const Draws& draws) {
   if (!verdict.reason.empty()) return verdict;
   const Outcome outcome = rule.outcome(draws);
   if (std::isnan(outcome.margin)) {
-    verdict.reason = rule.part->over_pairs ? "too few pairs to go by, or their numbers are not in the run"
-                                           : "a number is missing: of a method, or at a level";
+    verdict.reason = rule.part->over_pairs ? "too few pairs, or their numbers are not in the study"
+                                           : "a number is missing: of a grouper, or at a level";
     return verdict;
   }
   verdict.verdict = outcome.holds ? Verdict::Holds : Verdict::Fails;

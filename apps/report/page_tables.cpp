@@ -41,7 +41,7 @@ Json facts_of(const StudyFolder& run) {
                           : value;
     return facts;
   } catch (const Json::exception& error) {
-    throw IoError(path, "", std::string("not the manifest of a run: ") + error.what());
+    throw IoError(path, "", std::string("not the manifest of a study: ") + error.what());
   }
 }
 
@@ -122,7 +122,7 @@ void add_record(Json& columns, Words& words, int run, const StudyRecord& record,
                                    {"selection", &record.selection}})
     columns[name].push_back(words.number(*word));
   columns["repeat"].push_back(record.repeat);
-  columns["excluded"].push_back(role == PairRole::Excluded ? 1 : 0);
+  columns["excluded"].push_back(is_excluded(role) ? 1 : 0);
   for (const Measure* measure : measures_with(kOnPage)) {
     const std::optional<double> number = measure->of(record);
     columns[measure->name].push_back(measure->stored.count && number ? Json(static_cast<int>(*number))

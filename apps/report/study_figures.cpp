@@ -169,7 +169,7 @@ StudyFigures study_figures(const std::vector<StudyResults>& studies) {
     for (const ExperimentInfo& info : study.run->experiments) {
       if (!names.insert(empty_panel(info, "").name).second)
         throw IoError(study.run->folder, "",
-                      "experiment " + info.name + " on " + info.dataset + " stands in another run too");
+                      "experiment " + info.name + " on " + info.dataset + " is in another study too");
       if (is_of_times(info)) {
         Panel panel = time_panel(*study.run, info);
         if (keep_drawn(panel)) figures.panels.push_back(panel);

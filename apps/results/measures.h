@@ -80,14 +80,16 @@ const std::vector<PoseMeasure>& pose_measures();
 /// What a pair is to the means of an experiment: of every record of the pair the same.
 enum class PairRole {
   Judged,    ///< counts
-  Unjudged,  ///< has no truth: only what needs none counts (absent numbers are left out, never taken for 0)
+  Unjudged,  ///< excluded because it has no truth: only what needs none counts
   Excluded,  ///< has fewer correct matches than the experiment asks for, or none at all
   Failed,    ///< could not be matched
 };
 
-/// The one place where it is decided. A pair without a truth is never excluded: nobody knows how many of its matches are
-/// correct.
+/// The one place where it is decided.
 PairRole role_of(const StudyRecord& record, int least_true_matches);
+
+/// Whether a pair counts as excluded in tables: what is judged leaves it out, for all groupers alike.
+inline bool is_excluded(PairRole role) { return role == PairRole::Excluded || role == PairRole::Unjudged; }
 
 /// What the mean over pairs takes for a measure of a record; NaN if it is left out.
 double counted_number(const Measure& measure, const StudyRecord& record, PairRole role);

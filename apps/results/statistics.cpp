@@ -63,10 +63,10 @@ double tie_term(std::vector<double> values) {
 
 void check_scores(const std::vector<std::vector<double>>& scores) {
   if (scores.size() < 2)
-    throw InvalidInput("compare_ranks", "scores", std::to_string(scores.size()), "2 methods or more");
+    throw InvalidInput("compare_ranks", "scores", std::to_string(scores.size()), "2 groupers or more");
   for (const auto& row : scores) {
     if (row.empty() || row.size() != scores[0].size())
-      throw InvalidInput("compare_ranks", "scores", std::to_string(row.size()) + " pairs", "as many for each method");
+      throw InvalidInput("compare_ranks", "scores", std::to_string(row.size()) + " pairs", "as many for each grouper");
     for (const double score : row)
       if (!std::isfinite(score)) throw InvalidInput("compare_ranks", "scores", score, "finite numbers");
   }

@@ -97,7 +97,7 @@ PairSelections read_selections(const std::string& path) {
   const CsvTable table = read_csv(path);
   const std::vector<std::string> first = {"source_keypoint", "target_keypoint", "residual_pr"};
   if (table.header.size() < 3 || !std::equal(first.begin(), first.end(), table.header.begin()))
-    throw IoError(path, "header", "expected source_keypoint,target_keypoint,residual_pr and the methods");
+    throw IoError(path, "header", "expected source_keypoint,target_keypoint,residual_pr and the groupers");
   PairSelections selections;
   for (std::size_t column = 3; column < table.header.size(); ++column) selections.selected[table.header[column]];
   for (std::size_t row = 0; row < table.rows.size(); ++row) {

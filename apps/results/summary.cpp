@@ -53,7 +53,7 @@ SummaryValue value_of(const std::string& experiment, const LevelTable& level, co
 SummaryRow row_of(const ExperimentInfo& info, const LevelTable& level, const std::string& method) {
   SummaryRow row;
   row.experiment = info.name, row.dataset = info.dataset, row.level = level.level.label, row.method = method;
-  row.excluded = level.count(PairRole::Excluded);
+  row.excluded = level.count(PairRole::Excluded) + level.count(PairRole::Unjudged);
   row.failed = level.count(PairRole::Failed);
   const auto found = level.methods.find(method);
   if (found == level.methods.end()) return row;

@@ -17,14 +17,14 @@ struct SummaryValue {
 
 /// One grouper at one level of one experiment, from its LevelTable.
 ///
-/// A pair with fewer right matches than the experiment asks for is excluded for all methods. Means are unweighted over the
-/// pairs that stay (a pair that gave several tables counts with each); repeats count as one, by their mean. An empty
-/// selection has precision 0 and recall 0, and so has a method that failed on a pair. A pair that could not be matched at
-/// all is left out of the means; so is one without a truth, but of what can be said without (PairRole::Unjudged).
+/// A pair without a truth, or with fewer correct matches than the experiment requires, is excluded for all groupers. Means are
+/// unweighted over the remaining pairs (a pair that gave several tables counts with each); repeats count as one, by their
+/// mean. An empty selection has precision 0 and recall 0, and so has a grouper that failed on a pair. A pair that could not
+/// be matched at all is left out of the means.
 struct SummaryRow {
   std::string experiment, dataset, level, method;
   int pairs = 0;     ///< that the means are over
-  int excluded = 0;  ///< with too few right matches
+  int excluded = 0;  ///< with too few correct matches, or without a truth
   int empty = 0;     ///< of `pairs`, those where nothing was selected (in any repeat)
   int failed = 0;    ///< pairs that could not be matched, or on which the grouper gave no answer (in any repeat)
   std::map<std::string, SummaryValue> values;  ///< by the name of the measure; nothing where no row has the method

@@ -49,7 +49,7 @@ TaskResult task_of(const Json& json) {
   TaskResult task;
   const std::string status = json.at("status");
   const std::optional<MethodStatus> known = parse_status(status);
-  if (!known) throw InvalidInput("unit_result", "status", status, "a status of a method");
+  if (!known) throw InvalidInput("unit_result", "status", status, "a status of a grouper");
   task.status = *known;
   if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
   task.correct = counts_of(json.at("correct"));

@@ -16,7 +16,7 @@ constexpr char kWho[] = "describe_fpfh";
 constexpr std::size_t kBlock = 64;
 
 /// Adds a share of S(p).
-void add_share(const PairCounts& counts, double share, double* sums) {
+void add_share(const PairHistogram& counts, double share, double* sums) {
   const double weight = share / counts.pairs;
   for (int bin = 0; bin < kFpfhSize; ++bin) sums[bin] += weight * counts.bins[bin];
 }
@@ -32,10 +32,10 @@ class Describer {
         places_(static_cast<std::size_t>(vertices.rows())) {}
 
   Descriptors run(const Indices& keypoints, const ParallelFor& parallel) {
-    std::vector<Outcome> outcomes(keypoints.size(), Outcome::SmallSupport);
+    std::vector<KeypointOutcome> outcomes(keypoints.size(), KeypointOutcome::SmallSupport);
     walk(keypoints, &SupportFinder::find_rows, parallel, [&](std::size_t i, const Support& support) {
       if (support.count < options_.minimum_support) return;
-      outcomes[i] = Outcome::NoHistogram;
+      outcomes[i] = KeypointOutcome::NoHistogram;
       mark(keypoints[i]);
       for (int j = 0; j < support.count; ++j) mark(row(support, j));
     });
@@ -43,9 +43,9 @@ class Describer {
     Descriptors descriptors;
     descriptors.features.resize(kFpfhSize, static_cast<Eigen::Index>(keypoints.size()));
     walk(keypoints, &SupportFinder::find_rows, parallel, [&](std::size_t i, const Support& support) {
-      if (outcomes[i] == Outcome::NoHistogram &&
+      if (outcomes[i] == KeypointOutcome::NoHistogram &&
           weigh(keypoints[i], support, descriptors.features.col(static_cast<Eigen::Index>(i)).data()))
-        outcomes[i] = Outcome::Described;
+        outcomes[i] = KeypointOutcome::Described;
     });
     keep_described(keypoints, outcomes, descriptors);
     return descriptors;
@@ -55,7 +55,7 @@ class Describer {
   static int row(const Support& support, int j) { return static_cast<int>(support.rows[static_cast<std::size_t>(j)]); }
   void mark(int vertex) { needed_[static_cast<std::size_t>(vertex)].store(true, std::memory_order_relaxed); }
   std::size_t place_of(int vertex) const { return static_cast<std::size_t>(places_[static_cast<std::size_t>(vertex)]); }
-  const PairCounts& counts_of(int vertex) const { return counts_[place_of(vertex)]; }
+  const PairHistogram& counts_of(int vertex) const { return counts_[place_of(vertex)]; }
 
   /// Calls visit(i, support) for the support of the i-th vertex.
   template <class Find, class Visit>
@@ -97,7 +97,7 @@ class Describer {
   SupportFinder finder_;
   std::vector<std::atomic<bool>> needed_;  // by vertex
   std::vector<int> places_;                // of vertices among the counts
-  std::vector<PairCounts> counts_;
+  std::vector<PairHistogram> counts_;
 };
 
 bool Describer::weigh(int keypoint, const Support& support, double* feature) const {
@@ -105,7 +105,7 @@ bool Describer::weigh(int keypoint, const Support& support, double* feature) con
   double sums[kFpfhSize] = {};
   int with_histogram = 0;
   for (int j = 0; j < support.count; ++j) {
-    const PairCounts& counts = counts_of(row(support, j));
+    const PairHistogram& counts = counts_of(row(support, j));
     if (counts.pairs == 0) continue;
     const double distance = support.distance[static_cast<std::size_t>(j)];
     add_share(counts, is_pcl ? 1 / (distance * distance) : radius_ / distance, sums);

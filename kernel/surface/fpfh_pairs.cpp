@@ -104,7 +104,7 @@ constexpr std::size_t kCopies = 4;
 
 constexpr int kPlaces = 16;  // 11 bins, and one for pairs without
 
-HWY_FLATTEN PairCounts count(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
+HWY_FLATTEN PairHistogram count(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
   std::int32_t places[kCopies][3][kPlaces] = {};
   const PairBinner binner(support, normal, form);
   PairBins bins;
@@ -119,7 +119,7 @@ HWY_FLATTEN PairCounts count(const Support& support, const Eigen::Vector3d& norm
         ++places[copy][2][bins.phi[i + copy]];
       }
   }
-  PairCounts counts;
+  PairHistogram counts;
   for (int bin = 0; bin < kFpfhSize; ++bin)
     for (const auto& copy : places) counts.bins[bin] += copy[bin / kFpfhBins][bin % kFpfhBins];
   for (int bin = 0; bin < kFpfhBins; ++bin) counts.pairs += counts.bins[bin];
@@ -135,8 +135,8 @@ namespace corral {
 
 HWY_EXPORT(count);
 
-PairCounts count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
-  return normal.isZero(0) ? PairCounts() : HWY_DYNAMIC_DISPATCH(count)(support, normal, form);
+PairHistogram count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form) {
+  return normal.isZero(0) ? PairHistogram() : HWY_DYNAMIC_DISPATCH(count)(support, normal, form);
 }
 
 }  // namespace corral

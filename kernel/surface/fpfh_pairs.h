@@ -11,12 +11,12 @@ namespace corral {
 constexpr int kFpfhBins = 11;  ///< of each angle
 
 /// S(p), the histogram of one vertex, as numbers of pairs: theta, alpha, phi. Plain form: reference_simple_histogram.
-struct PairCounts {
+struct PairHistogram {
   std::int32_t bins[kFpfhSize] = {};
   std::int32_t pairs = 0;
 };
 
 /// Counts the pairs of a vertex with this normal and those around it, normals of length one or zero.
-PairCounts count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form);
+PairHistogram count_pairs(const Support& support, const Eigen::Vector3d& normal, FpfhForm form);
 
 }  // namespace corral

@@ -15,14 +15,14 @@ void require_keypoints(const char* who, const Points& vertices, const Points& no
                          "vertices 0 .. " + std::to_string(vertices.rows() - 1));
 }
 
-void keep_described(const Indices& keypoints, const std::vector<Outcome>& outcomes, Descriptors& descriptors) {
+void keep_described(const Indices& keypoints, const std::vector<KeypointOutcome>& outcomes, Descriptors& descriptors) {
   const bool has_frames = !descriptors.frames.empty();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
-    descriptors.dropped_small_support += outcomes[i] == Outcome::SmallSupport;
-    descriptors.dropped_no_frame += outcomes[i] == Outcome::NoFrame;
-    descriptors.dropped_no_histogram += outcomes[i] == Outcome::NoHistogram;
-    if (outcomes[i] != Outcome::Described) continue;
+    descriptors.dropped_small_support += outcomes[i] == KeypointOutcome::SmallSupport;
+    descriptors.dropped_no_frame += outcomes[i] == KeypointOutcome::NoFrame;
+    descriptors.dropped_no_histogram += outcomes[i] == KeypointOutcome::NoHistogram;
+    if (outcomes[i] != KeypointOutcome::Described) continue;
     descriptors.vertices.push_back(keypoints[i]);
     if (kept < i) {
       if (has_frames) descriptors.frames[kept] = descriptors.frames[i];

@@ -71,6 +71,12 @@ const std::vector<Descriptor>& descriptors() {
             return describe_shot(in.vertices, in.normals, in.keypoints, in.resolution, options, in.parallel);
           },
           kShotSize, true),
+      entry<FpfhOptions>(
+          {"fpfh", "Fast point feature histograms (FPFH)", "how normals turn between neighbours", "rusu2009fpfh"},
+          [](const DescriptorInput& in, const FpfhOptions& options) {
+            return describe_fpfh(in.vertices, in.normals, in.keypoints, in.resolution, options, in.parallel);
+          },
+          kFpfhSize, false),
   };
   return table;
 }

@@ -71,17 +71,17 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
   Descriptors descriptors;
   descriptors.frames.resize(keypoints.size());
   descriptors.features.resize(kShotSize, static_cast<Eigen::Index>(keypoints.size()));
-  std::vector<Outcome> outcomes(keypoints.size());
+  std::vector<KeypointOutcome> outcomes(keypoints.size());
   visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
-    outcomes[i] = Outcome::SmallSupport;
+    outcomes[i] = KeypointOutcome::SmallSupport;
     if (support.count < options.minimum_support) return;
-    outcomes[i] = Outcome::NoFrame;
+    outcomes[i] = KeypointOutcome::NoFrame;
     const auto frame = shot_frame(support, radius);
     if (!frame) return;
-    outcomes[i] = Outcome::NoHistogram;
+    outcomes[i] = KeypointOutcome::NoHistogram;
     const auto histogram = shot_histogram(support, *frame, radius, options.form);
     if (!histogram) return;
-    outcomes[i] = Outcome::Described;
+    outcomes[i] = KeypointOutcome::Described;
     descriptors.frames[i] = *frame;
     std::copy_n(histogram->data(), kShotSize, descriptors.features.col(static_cast<Eigen::Index>(i)).data());
   });
@@ -101,11 +101,11 @@ void add_shot_frames(const Points& vertices, double resolution, const ShotOption
                              options.form == ShotForm::PclBug ? Rim::Outside : Rim::Inside);
   descriptors.vertices.clear();
   descriptors.frames.resize(keypoints.size());
-  std::vector<Outcome> outcomes(keypoints.size(), Outcome::NoFrame);
+  std::vector<KeypointOutcome> outcomes(keypoints.size(), KeypointOutcome::NoFrame);
   visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
     if (const auto frame = shot_frame(support, radius)) {
       descriptors.frames[i] = *frame;
-      outcomes[i] = Outcome::Described;
+      outcomes[i] = KeypointOutcome::Described;
     }
   });
   keep_described(keypoints, outcomes, descriptors);

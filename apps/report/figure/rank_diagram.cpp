@@ -26,11 +26,11 @@ void check(const RankDiagram& diagram) {
   if (count < 2) throw InvalidInput("rank diagram", "methods", static_cast<double>(count), "2 or more");
   if (diagram.average_ranks.size() != count)
     throw InvalidInput("rank diagram", "average_ranks", static_cast<double>(diagram.average_ranks.size()),
-                       "one for each method");
+                       "one for each grouper");
   for (const auto& clique : diagram.cliques)
     for (const int method : clique)
       if (clique.size() < 2 || method < 0 || static_cast<std::size_t>(method) >= count)
-        throw InvalidInput("rank diagram", "cliques", method, "places of 2 or more methods");
+        throw InvalidInput("rank diagram", "cliques", method, "places of 2 or more groupers");
 }
 
 /// Lines and words in units of ranks (x) and of rows below the axis (y).

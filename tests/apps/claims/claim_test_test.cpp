@@ -145,10 +145,10 @@ TEST(ClaimTest, LeadsAreOverTheBestOther) { EXPECT_THAT(leads_of({1, 4, 2}), Ele
 TEST(ClaimFile, NamesWhatIsWrong) {
   const auto complaint = [](const std::string& keys) { return testing::io_error_of([&] { rule(keys); }); };
   EXPECT_THAT(complaint("is = [\"a > e\"]"), HasSubstr("found 'e'"));
-  EXPECT_THAT(complaint("is = [\"a >> b\"]"), HasSubstr("no comparison"));
-  EXPECT_THAT(complaint("is = [\"a > b +\"]"), HasSubstr("no comparison"));
-  EXPECT_THAT(complaint("is = [\"a > rank(b)\"]"), HasSubstr("no comparison"));
-  EXPECT_THAT(complaint("is = [\"a\"]"), HasSubstr("no comparison"));
+  EXPECT_THAT(complaint("is = [\"a >> b\"]"), HasSubstr("not a comparison"));
+  EXPECT_THAT(complaint("is = [\"a > b +\"]"), HasSubstr("not a comparison"));
+  EXPECT_THAT(complaint("is = [\"a > rank(b)\"]"), HasSubstr("not a comparison"));
+  EXPECT_THAT(complaint("is = [\"a\"]"), HasSubstr("not a comparison"));
   EXPECT_THAT(complaint("is = [\"a > median(\"]"), HasSubstr("line 4"));
   EXPECT_THAT(complaint("of = \"precison\", is = [\"a > b\"]"), HasSubstr("did you mean 'precision'?"));
   EXPECT_THAT(complaint("take = \"mean\""), HasSubstr("a rule needs"));

@@ -11,8 +11,8 @@
 #include "apps/align/alignment_files.h"
 #include "io/csv_file.h"
 #include "kernel/number_text.h"
-#include "tests/support/program.h"
 #include "tests/support/object_views.h"
+#include "tests/support/program.h"
 
 namespace corral {
 namespace {
@@ -83,7 +83,7 @@ TEST(Align, GivenPosesAreJudgedAndNothingElse) {
   place.put("poses.csv", "source,target,transform\na,b,ab.xf\n");
   const Outcome shorter = place.corral("align a.ply b.ply c.txt --poses poses.csv -o out");
   EXPECT_THAT(shorter.out, HasSubstr("part 1 of 2: a b\npart 2 of 2: c\n"));
-  EXPECT_THAT(shorter.err, HasSubstr("nothing connects the 2 parts"));
+  EXPECT_THAT(shorter.err, HasSubstr("the views form 2 unconnected parts"));
   EXPECT_FALSE(std::filesystem::exists(place / "out/poses/2.xf"));
 }
 
@@ -95,8 +95,8 @@ TEST(Align, WhatIsWrongIsNamed) {
     EXPECT_EQ(outcome.status, status) << arguments;
     return outcome.err;
   };
-  EXPECT_THAT(refusal("a.ply", 2), HasSubstr("two views at least"));
-  EXPECT_THAT(refusal("a.ply ./a.ply", 2), HasSubstr("two views are called 'a'"));
+  EXPECT_THAT(refusal("a.ply", 2), HasSubstr("at least two views"));
+  EXPECT_THAT(refusal("a.ply ./a.ply", 2), HasSubstr("two views are named 'a'"));
   EXPECT_THAT(refusal("a.ply b.ply --direction 0,0,0", 2), HasSubstr("--direction"));
   EXPECT_THAT(refusal("a.ply none.ply", 3), HasSubstr("none.ply"));
   EXPECT_THAT(refusal("a.ply b.ply --sensor 0,0,-8", 3), HasSubstr("in front of"));

@@ -163,7 +163,7 @@ TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
   place_.put("data/b3r/m2-0.45.ply", "ply\nformat ascii 1.0\n");
   const Outcome outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 4);
-  EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 2 failed (records.csv says why); the run is in run"));
+  EXPECT_THAT(outcome.err, HasSubstr("6 pairs, 2 failed (records.csv says why); the study is in run"));
   int failed = 0;
   for (const StudyRecord& record : read_study(place_ / "run").records) {
     if (record.pair != "m1-0.25") continue;
@@ -277,7 +277,7 @@ TEST_F(Evaluate, TimesAreTakenAlone) {
   EXPECT_EQ(place_.corral("evaluate time.toml --data data -o run --jobs 2").status, 2);
   const Outcome outcome = place_.corral("evaluate time.toml --data data -o run");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "the run is in run\n");
+  EXPECT_EQ(outcome.err, "the study is in run\n");
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("upper quartile"), Not(HasSubstr("quartiles"))));
   const CsvTable times = read_csv(place_ / "run/time.csv");
   EXPECT_EQ(times.rows.size(), 14u);  // no table has 100000 rows

@@ -60,7 +60,7 @@ TEST(Usage, AMethodThatIsNotThereIsAnsweredWithThoseThatAre) {
   expect_usage(place.corral("group matches.csv -m GC"), known);
   expect_usage(place.corral("group missing.csv -m banana"), known);
   expect_usage(place.corral("run a.ply b.ply --methods gc,banana"), known);
-  expect_usage(place.corral("run a.ply b.ply --methods gc,gc"), "gc stands twice");
+  expect_usage(place.corral("run a.ply b.ply --methods gc,gc"), "gc occurs twice");
   expect_usage(place.corral("run a.ply b.ply --methods ''"), "--methods");
 }
 
@@ -138,7 +138,7 @@ TEST(BadInput, AFolderThatIsNotWhatTheCommandReadsIsNamedWithWhatIs) {
     SCOPED_TRACE(command);
     expect_bad_input(place.corral(command), "expected the folder of one data set");
   }
-  expect_bad_input(place.corral("evaluate noise --data folder -o run"), "folder: is no folder");
+  expect_bad_input(place.corral("evaluate noise --data folder -o run"), "folder: is not a folder");
   place.put("points.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   expect_bad_input(place.corral("scan points.xyz -o view.ply"), "points.xyz: has no faces");
   EXPECT_THAT(place.names(), ElementsAre("points.xyz"));

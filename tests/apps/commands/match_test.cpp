@@ -146,7 +146,7 @@ TEST(MatchOptions, BadValuesAreRefusedInOneSentence) {
   place.put_pair();
   const std::pair<std::string, std::string> said[] = {
       {"--detector sift", "expected harris|harris-mesh|"},
-      {"--descriptor sift", "expected shot|"},
+      {"--descriptor sift", "expected shot|fpfh"},
       {"--detector Harris", "--detector is 'Harris'"},
       {"--normals outward", "expected mesh|origin"},
       {"--frames some", "expected shot|none"},
@@ -272,7 +272,7 @@ TEST(RunOptions, VerboseHasTheStages) {
   EXPECT_THAT(outcome.err,
               AllOf(StartsWith("source: 2562 points, 5120 faces, 1 components, pr "), HasSubstr("\nstage "),
                     HasSubstr("\nmatching "), HasSubstr("\ndescriptors of the target ")));
-  EXPECT_THAT(outcome.out, HasSubstr("% of the right matches agree within 10 degrees"));
+  EXPECT_THAT(outcome.out, HasSubstr("% of the correct matches agree within 10 degrees"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("hint: ")));
 }
 

@@ -152,18 +152,17 @@ TEST(Report, ARunThatIsHalfMadeOrTwiceTheSameIsNamed) {
   put_run(place);
   put_run(place, "again");
   for (const char* command : {"report run again -o out", "claims run again"})
-    EXPECT_THAT(place.corral(command).err,
-                AllOf(StartsWith("corral: again: "), HasSubstr("stands in another run too")));
+    EXPECT_THAT(place.corral(command).err, AllOf(StartsWith("corral: again: "), HasSubstr("is in another study too")));
   std::filesystem::remove(place / "run/records.csv");
   for (const char* command : {"report run -o out", "claims run", "compare run"}) {
     const Outcome outcome = place.corral(command);
     EXPECT_EQ(outcome.status, 3);
-    EXPECT_THAT(outcome.err, StartsWith("corral: run: is half made"));
+    EXPECT_THAT(outcome.err, StartsWith("corral: run: is unfinished"));
   }
   place.put("run/manifest.json", "{");
   const Outcome outcome = place.corral("compare run");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("run/manifest.json, byte 2: no JSON"), Not(HasSubstr("exception"))));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("run/manifest.json, byte 2: is not JSON"), Not(HasSubstr("exception"))));
   EXPECT_FALSE(std::filesystem::exists(place / "out"));
 }
 
@@ -247,8 +246,7 @@ TEST(Report, DrawsPairs) {
   const EmptyPath path;  // the pictures need no gnuplot
   const Outcome nobody = place.corral("report run -o out --pairs b3r/bal");
   EXPECT_EQ(nobody.status, 3);
-  EXPECT_THAT(nobody.err,
-              HasSubstr("--pairs is b3r/bal, expected a pair of the runs with selections, such as b3r/ball"));
+  EXPECT_THAT(nobody.err, HasSubstr("--pairs is b3r/bal, expected a pair with selections, such as b3r/ball"));
   EXPECT_EQ(place.corral("report run -o out").status, 1);
   for (const char* name : {"matches", "SS", "GC", "all_matches", "aligned"})
     EXPECT_THAT(place.text("out/pairs/b3r-ball-" + std::string(name) + ".png"), StartsWith("\x89PNG")) << name;

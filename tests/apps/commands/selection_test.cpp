@@ -66,7 +66,8 @@ TEST(Group, TooLargeIsAnAnswer) {
   place.put_problem();
   const Outcome outcome = place.corral("group matches.csv -m st --memory-limit 10kB --json -o g.csv");
   EXPECT_EQ(outcome.status, 4);
-  EXPECT_THAT(outcome.err, HasSubstr("st is too large for 100 matches: needs 0.1 MB, the limit is 0.0 MB"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("st would use too much memory for 100 matches: needs 0.1 MB, the limit is 0.0 MB"));
   EXPECT_THAT(outcome.json()["status"].get<std::string>(), HasSubstr("too large"));
   EXPECT_TRUE(outcome.json()["selected"].is_null());
   EXPECT_FALSE(std::filesystem::exists(place / "g.csv"));
@@ -207,8 +208,8 @@ TEST(Score, CountsAndDivides) {
             60);
   const Outcome text = place.corral("score matches.csv group.csv --truth truth.txt --threshold-pr 1e9");
   expect_ok(text);
-  EXPECT_THAT(text.out, StartsWith("matches  selected  correct  true matches  precision  recall"));
-  EXPECT_THAT(text.out, HasSubstr("\n    100        60       60           100     1.0000  0.6000  0.7500\n"));
+  EXPECT_THAT(text.out, StartsWith("matches  selected  correct  all correct  precision  recall"));
+  EXPECT_THAT(text.out, HasSubstr("\n    100        60       60          100     1.0000  0.6000  0.7500\n"));
 }
 
 TEST(Score, JudgesTheFitToTheSelection) {

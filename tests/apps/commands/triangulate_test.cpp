@@ -143,7 +143,7 @@ TEST(Triangulate, RefusesWhatIsNoVectorAngleOrLength) {
 TEST(Triangulate, InfoTellsACloudOfIt) {
   const Workplace place;
   write_mesh(place / "view.ply", stepped_view());
-  EXPECT_THAT(place.corral("info view.ply").out, HasSubstr("'corral triangulate' gives a view faces"));
+  EXPECT_THAT(place.corral("info view.ply").out, HasSubstr("'corral triangulate' gives faces to a range scan"));
 }
 
 }  // namespace

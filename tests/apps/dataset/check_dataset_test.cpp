@@ -58,7 +58,7 @@ TEST_F(CheckDataset, ACleanSetPasses) {
   const Outcome outcome = check();
   EXPECT_EQ(outcome.status, 0) << outcome.out;
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, ".: 4 pairs, nothing wrong\n");
+  EXPECT_EQ(outcome.err, ".: 4 pairs, no problems\n");
   const auto json = check("--json").json();
   EXPECT_EQ(json["pairs"], 4);
   EXPECT_TRUE(json["findings"].empty());
@@ -138,7 +138,7 @@ TEST_F(CheckDataset, DuplicatePairsAreNamedWhateverTheirFilesAreCalled) {
   place_.put("copy.ply", place_.text("b1.ply"));
   place_.put("copy.xf", place_.text("t1.xf"));
   set_.pairs.back() = {"again", "a1.ply", "copy.ply", "copy.xf", {}};
-  expect_finding("again: ", "those of x1");
+  expect_finding("again: ", "same surfaces and truth as x1");
   // The same surfaces under another truth are another pair: a model may stand in a scene twice.
   Mesh twice = mesh("b1.ply");
   RigidTransform aside = truth(1);

@@ -151,7 +151,7 @@ TEST(MakeU3or, AnotherSeedIsAnotherSet) {
   make_scenes(models, folder / "two", 1, 2, 1);
   EXPECT_NE(contents(folder / "one").at("scenes/s01.ply"), contents(folder / "two").at("scenes/s01.ply"));
   EXPECT_THAT(testing::io_error_of([&] { make_scenes(models, folder / "one", 1, 2, 1); }),
-              HasSubstr("expected an empty folder or the same input and options"));
+              HasSubstr("expected an empty folder or the same ones"));
 }
 
 TEST(MakeU3or, RefusesModelsWithoutFacesOrOfOneName) {

@@ -50,7 +50,7 @@ TEST(ExplainPair, APairThatTheOracleRegisters) {
   EXPECT_EQ(pair.cause, Cause::Found);
   EXPECT_EQ(
       pair.text,
-      "can be registered: 40 of 500 matches are right within 4.0 pr, and the refinement of all of them ends at 0.05 "
+      "can be registered: 40 of 500 matches are correct within 4.0 pr, and the refinement of all of them ends at 0.05 "
       "pr; 300 of 500 matched source keypoints lie in the overlap (a pair is registered by a mean error over the "
       "overlap of at most 5 pr)");
   EXPECT_EQ(explain_pair_of(record_of(9, 5), kCounts).cause, Cause::Found) << "the limit is inclusive";
@@ -61,7 +61,7 @@ TEST(ExplainPair, TooFewKeypointsInTheOverlap) {
   const Explanation pair = explain_pair_of(oracle, {500, 19, 4, 4});
   EXPECT_EQ(pair.cause, Cause::TooFewKeypoints);
   EXPECT_THAT(pair.text, AllOf(HasSubstr("19 of 500 matched source keypoints lie in the overlap"), HasSubstr("20"),
-                               HasSubstr("4 of 500 matches are right within 4.0 pr")));
+                               HasSubstr("4 of 500 matches are correct within 4.0 pr")));
   EXPECT_EQ(explain_pair_of(oracle, {500, 20, 4, 4}).cause, Cause::TooFewTrueMatches);
   EXPECT_EQ(explain_pair_of(kGoodOracle, {500, 5, 4, 4}).cause, Cause::Found) << "few, but they were enough";
 }
@@ -71,7 +71,7 @@ TEST(ExplainPair, TooFewTrueMatches) {
   oracle.pose.status = RefineStatus::TooFewRows;
   const Explanation two = explain_pair_of(oracle, {500, 300, 2, 4});
   EXPECT_EQ(two.cause, Cause::TooFewTrueMatches);
-  EXPECT_THAT(two.text, HasSubstr("2 of 500 matches are right within 4.0 pr, and a pose needs 3"));
+  EXPECT_THAT(two.text, HasSubstr("2 of 500 matches are correct within 4.0 pr, and a pose needs 3"));
   const Explanation bad = explain_pair_of(record_of(13, 12.25, 5, 5), {500, 300, 5, 4});
   EXPECT_EQ(bad.cause, Cause::TooFewTrueMatches);
   EXPECT_THAT(bad.text,
@@ -85,11 +85,11 @@ TEST(ExplainMethod, FoundOrSaved) {
   EXPECT_EQ(found.cause, Cause::Found);
   EXPECT_EQ(
       found.text,
-      "the grouper found it: kept 24 of the 40 right matches among 30 rows (precision 0.800, recall 0.600); their "
+      "registered by the fit: kept 24 of the 40 correct matches among 30 rows (precision 0.800, recall 0.600); their "
       "fit is at 0.75 pr, the refinement ends at 0.10 pr");
   const Explanation saved = explain(record_of(7.5, 0.1));
   EXPECT_EQ(saved.cause, Cause::Saved);
-  EXPECT_THAT(saved.text, AllOf(HasSubstr("the optimiser saved it"), HasSubstr("fit is at 7.50 pr, above 5 pr"),
+  EXPECT_THAT(saved.text, AllOf(HasSubstr("registered by the refinement"), HasSubstr("fit is at 7.50 pr, above 5 pr"),
                                 HasSubstr("ends at 0.10 pr")));
 }
 
@@ -108,13 +108,13 @@ TEST(ExplainMethod, LostWithThePair) {
 TEST(ExplainMethod, TheGrouperMissedTheRightMatches) {
   const Explanation missed = explain(record_of(90, 80, 30, 2));
   EXPECT_EQ(missed.cause, Cause::GrouperMissed);
-  EXPECT_THAT(missed.text, HasSubstr("the grouper missed them: kept 2 of the 40 right matches among 30 rows"));
+  EXPECT_THAT(missed.text, HasSubstr("too few correct matches kept: kept 2 of the 40 correct matches among 30 rows"));
   const Explanation drowned = explain(record_of(90, 80, 30, 14));
   EXPECT_EQ(drowned.cause, Cause::GrouperMissed) << "more than half of it wrong, at rest";
-  EXPECT_THAT(drowned.text, HasSubstr("the grouper let too many wrong ones in: kept 14 of"));
+  EXPECT_THAT(drowned.text, HasSubstr("too many incorrect matches kept: kept 14 of"));
   const Explanation astray = explain(record_of(90, 80, 30, 15));
   EXPECT_EQ(astray.cause, Cause::GrouperMissed);
-  EXPECT_THAT(astray.text, HasSubstr("the grouper kept right ones that do not fix the pose: kept 15 of"));
+  EXPECT_THAT(astray.text, HasSubstr("the correct matches kept do not determine the pose: kept 15 of"));
   EXPECT_EQ(explain(record_of(90, -1, 30, 14)).cause, Cause::GrouperMissed) << "no optimiser can do with that";
   MethodRecord nothing = record_of(-1, -1, 0, 0);
   nothing.pose.status = RefineStatus::TooFewRows;
@@ -136,7 +136,7 @@ TEST(ExplainMethod, ASelectionThatFixesNoPose) {
   MethodRecord record = record_of(-1, -1, 5, 4);
   record.pose.status = RefineStatus::DegenerateGeometry;
   EXPECT_EQ(explain(record).cause, Cause::DegenerateSelection);
-  EXPECT_THAT(explain(record).text, HasSubstr("on one line or in one place"));
+  EXPECT_THAT(explain(record).text, HasSubstr("on one line or at one point"));
   EXPECT_EQ(explain(record, record_of(9, 9)).cause, Cause::TooFewTrueMatches) << "no grouper could do better";
 }
 
@@ -147,13 +147,13 @@ TEST(ExplainMethod, TheOptimiserLostIt) {
   moving.pose.converged = false;
   moving.pose.iterations = 500;
   EXPECT_EQ(explain(moving).cause, Cause::NotConverged);
-  EXPECT_THAT(explain(moving).text, HasSubstr("did not come to rest within 500 iterations"));
+  EXPECT_THAT(explain(moving).text, HasSubstr("did not converge within 500 iterations"));
   moving.initial_errors->points->mean_pr = 1;
   EXPECT_EQ(explain(moving).cause, Cause::NotConverged);
   const Explanation spoiled = explain(record_of(1, 8, 30, 5));
   EXPECT_EQ(spoiled.cause, Cause::Spoiled);
-  EXPECT_THAT(spoiled.text, AllOf(HasSubstr("the optimiser spoiled it"), HasSubstr("fit is at 1.00 pr"),
-                                  HasSubstr("ends at 8.00 pr")));
+  EXPECT_THAT(spoiled.text,
+              AllOf(HasSubstr("lost by the refinement"), HasSubstr("fit is at 1.00 pr"), HasSubstr("ends at 8.00 pr")));
   EXPECT_EQ(explain(record_of(1, 8), record_of(9, 9)).cause, Cause::Spoiled) << "the start was good all the same";
 }
 
@@ -170,10 +170,9 @@ TEST(ExplainMethod, TheDensePoseIsToldApart) {
   EXPECT_THAT(explain(lost).text, Not(HasSubstr("surface")));
   lost.dense_errors = PoseErrors{1, 1, PointError{0.5, 0.5}, std::nullopt};
   EXPECT_EQ(explain(lost).cause, Cause::GrouperMissed) << "it is not the correspondences' merit";
-  EXPECT_THAT(explain(lost).text,
-              HasSubstr("on the whole surface it is at 0.50 pr, which registers the pair after all"));
+  EXPECT_THAT(explain(lost).text, HasSubstr("the dense refinement ends at 0.50 pr, which registers the pair"));
   lost.dense_errors->points->mean_pr = 70;
-  EXPECT_THAT(explain(lost).text, HasSubstr("on the whole surface it is at 70.0 pr, lost"));
+  EXPECT_THAT(explain(lost).text, HasSubstr("the dense refinement ends at 70.0 pr, lost"));
 }
 
 TEST(ExplainMethod, EveryCauseHasAName) {

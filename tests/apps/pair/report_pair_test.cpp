@@ -113,23 +113,24 @@ TEST(MethodsText, HasARowPerMethod) {
   failed.failure = "no table";
   const auto lines = lines_of(methods_text({full_record(), failed}));
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_THAT(lines[0], StartsWith("method  selected  precision"));
-  EXPECT_THAT(lines[1], StartsWith("gc             3      0.667"));
+  EXPECT_THAT(lines[0], StartsWith("grouper  selected  precision"));
+  EXPECT_THAT(lines[1], StartsWith("gc              3      0.667"));
   EXPECT_THAT(lines[1], EndsWith("refined"));
-  EXPECT_THAT(lines[2], StartsWith("ss             -          -"));
+  EXPECT_THAT(lines[2], StartsWith("ss              -          -"));
   EXPECT_THAT(lines[2], EndsWith("failed: no table"));
 }
 
 TEST(MethodsText, LeavesColumnsOutThatAreEmpty) {
   MethodRecord record = full_record();
   record.errors->points->rmse_pr = 2;
-  EXPECT_EQ(lines_of(methods_text({record}))[0],
-            "method  selected  precision  recall     F1  time ms  fit err pr  rot err deg  transl err pr  mean err pr  "
-            "RMSE pr     ADD  outcome  status");
+  EXPECT_EQ(
+      lines_of(methods_text({record}))[0],
+      "grouper  selected  precision  recall     F1  time ms  fit err pr  rot err deg  transl err pr  mean err pr  "
+      "RMSE pr     ADD  outcome  status");
   record.score.reset();
   record.errors.reset();
   record.initial_errors.reset();
-  EXPECT_EQ(methods_text({record}), "method  selected  time ms  status\ngc             3     0.10  refined\n");
+  EXPECT_EQ(methods_text({record}), "grouper  selected  time ms  status\ngc              3     0.10  refined\n");
 }
 
 TEST(ToJson, AMethodHasItsKeysInOrder) {
@@ -192,7 +193,7 @@ TEST(Dense, HasTheSameScores) {
             (std::vector<std::string>{
                 "method,overlap_before,overlap,residual_before_pr,residual_pr,rotation_error_deg,translation_error_pr,"
                 "rmse_pr,mean_error_pr,add_share,success_5pr,success_from_pr,success_add,condition,status",
-                "gc,0,0.5,0,0.25,1,2,4,3,0.05,1,3,1,0,refined", "ss,,,,,,,,,,,,,,no pose to begin with"}));
+                "gc,0,0.5,0,0.25,1,2,4,3,0.05,1,3,1,0,refined", "ss,,,,,,,,,,,,,,no pose to start from"}));
   EXPECT_THAT(dense_text({record}), HasSubstr("gc"));
 }
 

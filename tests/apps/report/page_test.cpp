@@ -114,7 +114,7 @@ TEST_F(Page, SaysOfEachRecordWhetherItIsExcluded) {
   found[0].records[0].true_matches.reset();
   const Json page = data_of(report_page(found, results_of(found)));
   for (std::size_t row = 0; row < found[0].records.size(); ++row)
-    EXPECT_EQ(page["records"]["excluded"][row], found[0].records[row].true_matches ? 1 : 0) << row;
+    EXPECT_EQ(page["records"]["excluded"][row], found[0].records[row].matches ? 1 : 0) << row;
 }
 
 TEST_F(Page, HoldsEveryRecord) {

@@ -149,7 +149,7 @@ TEST(Summary, WhatIsExcludedIsSoForAllMethods) {
   }
 }
 
-// Nobody knows how many of its matches are right: it is not excluded, and lowers no mean.
+// It counts as excluded, and lowers no mean.
 TEST(Summary, APairWithoutATruthCountsOnlyWhereNoneIsNeeded) {
   StudyRecord unknown = record_of("a", 0, 3, 0, {}), unanswered = record_of("b", 0, 3, 0, {});
   for (StudyRecord* record : {&unknown, &unanswered})
@@ -157,7 +157,7 @@ TEST(Summary, APairWithoutATruthCountsOnlyWhereNoneIsNeeded) {
   unanswered.selected.reset();
   const SummaryRow row = first_row({unknown, unanswered, record_of("c", 4, 4, 2, 1)});
   EXPECT_EQ(row.pairs, 1);
-  EXPECT_EQ(row.excluded, 0);
+  EXPECT_EQ(row.excluded, 2);
   EXPECT_EQ(row.failed, 1);  // that is seen without a truth
   for (const auto& [name, value] : {std::pair<std::string, double>{"precision", 0.5},
                                     {"success_5pr", 1},

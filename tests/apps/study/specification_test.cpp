@@ -61,7 +61,7 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   ASSERT_EQ(error_of(kGood), "");
   EXPECT_THAT(with("groupers", "grupers"), AllOf(HasSubstr("line 5"), HasSubstr("did you mean 'groupers'?")));
   EXPECT_THAT(with("\"st\"", "\"sst\""), HasSubstr("did you mean 'ss'?"));
-  EXPECT_THAT(with("\"st\"", "\"gc\""), HasSubstr("gc stands twice"));
+  EXPECT_THAT(with("\"st\"", "\"gc\""), HasSubstr("gc occurs twice"));
   EXPECT_THAT(with("normals =", "normal ="), HasSubstr("did you mean 'normals'?"));
   EXPECT_THAT(with("\"origin\"", "\"sensor\""), HasSubstr("expected mesh|origin"));
   EXPECT_THAT(with("radius_pr = 2", "radius = 2"), HasSubstr("expected radius_pr"));
@@ -71,12 +71,12 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   EXPECT_THAT(with("tolerance_pr = 2", "tolerance_pr = -2"), HasSubstr("tolerance_pr"));
   EXPECT_THAT(with("cluster = \"clique\"", "seed = 3"), HasSubstr("seed of the experiment"));
   EXPECT_THAT(with("options.gc", "options.gcc"), HasSubstr("did you mean 'gc'?"));
-  EXPECT_THAT(with("[0.05, 1]", "[1, 1]"), HasSubstr("stands twice"));
+  EXPECT_THAT(with("[0.05, 1]", "[1, 1]"), HasSubstr("occurs twice"));
   EXPECT_THAT(with("levels = [0.05, 1]", ""), HasSubstr("either levels"));
   EXPECT_THAT(with("levels = [0.05, 1]", "bins = [[2, 1]]"), HasSubstr("low < high"));
-  EXPECT_THAT(with("levels = [0.05, 1]", "bins = [[0, 2], [1, 3]]"), HasSubstr("in order"));
+  EXPECT_THAT(with("levels = [0.05, 1]", "bins = [[0, 2], [1, 3]]"), HasSubstr("do not overlap"));
   EXPECT_THAT(with("levels = [0.05, 1]", "bins = [[0, 2]]\nlabels = [\"a\", \"b\"]"), HasSubstr("labels"));
-  EXPECT_THAT(with("name = \"mine\"", "name = \"My own\""), HasSubstr("small letters"));
+  EXPECT_THAT(with("name = \"mine\"", "name = \"My own\""), HasSubstr("lower-case letters"));
   EXPECT_THAT(with("dataset = \"b3r\"", ""), HasSubstr("dataset"));
   EXPECT_THAT(with("noise_pr", "threshold_pr") + with("levels = [0.05, 1]", "levels = [0.05, 1]\npreset = \"mine\""),
               HasSubstr("preset"));
@@ -146,7 +146,7 @@ TEST(Specification, OptionsOfTheCommandLineComeLast) {
 
 TEST(Specification, TheProgramCarriesThePapersExperiments) {
   EXPECT_THAT(built_in_experiments(),
-              ElementsAre("clutter", "density", "detectors", "detectors-fpfh", "matches", "noise", "occlusion",
+              ElementsAre("clutter", "density", "detectors-fpfh", "detectors", "matches", "noise", "occlusion",
                           "overlap", "threshold", "time", "tuning-consistency", "tuning-spectral"));
   std::string figures;
   for (const std::string& name : built_in_experiments()) {

@@ -346,7 +346,7 @@ TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
          "filter(Boolean).length, byId('left-caption').textContent]");
   EXPECT_GT(drawn[0], 0);
   EXPECT_EQ(drawn[0], drawn[1]);
-  EXPECT_THAT(drawn[2].get<std::string>(), HasSubstr("no truth to judge them"));
+  EXPECT_THAT(drawn[2].get<std::string>(), HasSubstr("not judged without a truth"));
   const Json unjudged = pixels();
   EXPECT_LT(unjudged["right"].get<int>() + unjudged["wrong"].get<int>(), 100);
   EXPECT_GT(unjudged["target"], 5000);
