@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "apps/pair/option_names.h"
 #include "apps/runtime/memory.h"
 #include "io/toml_file.h"
 #include "kernel/error.h"
@@ -47,14 +48,6 @@ void add_fields(CLI::App& command, Options& options, const std::string& group) {
   });
 }
 
-std::vector<std::string> all_names() {
-  std::vector<std::string> names;
-  for (const Grouper& entry : groupers()) names.push_back(entry.name);
-  for (const Detector& entry : detectors()) names.push_back(entry.name);
-  for (const Descriptor& entry : descriptors()) names.push_back(entry.name);
-  return names;
-}
-
 }  // namespace
 
 void add_match_options(CLI::App& command, MatchSettings& settings) {
@@ -90,7 +83,7 @@ void add_set_option(CLI::App& command, std::vector<std::string>& set) {
 }
 
 OptionsByName parse_set(const std::vector<std::string>& set) {
-  const std::vector<std::string> known = all_names();
+  const std::vector<std::string> known = option_names();
   OptionsByName options;
   for (const std::string& text : set) {
     const std::size_t equals = text.find('='), dot = text.find('.');

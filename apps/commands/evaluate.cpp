@@ -7,7 +7,7 @@
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
-#include "apps/study/specification.h"
+#include "apps/study/experiment_options.h"
 #include "apps/study/study.h"
 #include "apps/study/time_study.h"
 #include "kernel/error.h"

@@ -71,8 +71,8 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
     StudyRecord record = common;
     record.method = bound;
     if (result.failure.empty())
-      record =
-          scored(std::move(record), record.method == "baseline" ? *result.baseline : result.oracles[threshold], threshold);
+      record = scored(std::move(record), record.method == "baseline" ? *result.baseline : result.oracles[threshold],
+                      threshold);
     records.push_back(std::move(record));
   }
 }

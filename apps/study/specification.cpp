@@ -5,7 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/pair/option_names.h"
 #include "apps/runtime/embedded_files.h"
+#include "apps/study/experiment_options.h"
 #include "grouping/registry.h"
 #include "io/file.h"
 #include "io/line_reader.h"
@@ -25,30 +27,9 @@ std::vector<std::string> method_names() {
   return names;
 }
 
-/// The default options of a grouper, detector or descriptor; null for another name.
-const std::vector<OptionValue>* default_options(const std::string& name) {
-  if (const Grouper* entry = look_up(groupers(), name)) return &entry->options;
-  if (const Detector* entry = look_up(detectors(), name)) return &entry->options;
-  if (const Descriptor* entry = look_up(descriptors(), name)) return &entry->options;
-  return nullptr;
-}
-
-std::vector<std::string> all_names() {
-  std::vector<std::string> names = method_names();
-  for (const Detector& entry : detectors()) names.push_back(entry.name);
-  for (const Descriptor& entry : descriptors()) names.push_back(entry.name);
-  return names;
-}
-
-/// "name.option" in two.
-std::pair<std::string, std::string> split(const std::string& option) {
-  const std::size_t dot = option.find('.');
-  return {option.substr(0, dot), option.substr(dot + 1)};
-}
-
 /// Whether an option takes one of several words.
 bool is_choice(const std::string& option) {
-  const auto [name, field] = split(option);
+  const auto [name, field] = split_option(option);
   for (const OptionValue& each : *default_options(name))
     if (each.name == field) return each.accepted.find('|') != std::string::npos;
   return false;
@@ -82,7 +63,7 @@ void check_method(const TomlTable& table, const std::string& key, const std::str
 
 /// A grouper, detector or descriptor.
 void check_name(const TomlTable& table, const std::string& key, const std::string& name) {
-  if (!default_options(name)) fail_unknown(table, key, name, all_names());
+  if (!default_options(name)) fail_unknown(table, key, name, option_names());
 }
 
 /// The sweep of an attribute. A name that is not built in is a column of pairs.csv.
@@ -154,17 +135,6 @@ std::vector<AttributeFilter> read_filters(const TomlTable& table) {
   return filters;
 }
 
-/// The value of a choice of the matching by its name in [matching] or in an attribute. Throws InvalidInput.
-void set_choice(MatchSettings& matching, const std::string& name, const std::string& value) {
-  if (name == "detector") matching.detector = find_detector(value).name;
-  if (name == "descriptor") matching.descriptor = find_descriptor(value).name;
-  MatchSettings::visit_fields(matching, [&](const OptionField& field, auto& member) {
-    if (field.name == name && !detail::parse_value(value, member))
-      throw InvalidInput("matching", name, "'" + value + "'",
-                         detail::accepted_values<std::decay_t<decltype(member)>>(field));
-  });
-}
-
 void read_matching(const TomlTable& root, Experiment& experiment) {
   const std::optional<TomlTable> table = root.table("matching");
   if (!table) return;
@@ -214,32 +184,6 @@ void read_varied(const TomlTable& root, Experiment& experiment) {
   if (experiment.varied_values.empty()) root.fail("vary", "expected [vary.NAME] with an option = [..]");
 }
 
-/// Whether something takes part in the experiment.
-bool is_in_use(const Experiment& experiment, const std::string& name) {
-  const std::vector<std::string>& methods = experiment.info.methods;
-  if (std::find(methods.begin(), methods.end(), name) != methods.end()) return true;
-  return std::any_of(experiment.info.levels.begin(), experiment.info.levels.end(), [&](const StudyLevel& level) {
-    const std::vector<std::string> used = matching_at(experiment, level).in_use();
-    return std::find(used.begin(), used.end(), name) != used.end();
-  });
-}
-
-/// The options that the experiment gives must be accepted by what takes them, at every level. Throws InvalidInput.
-void check_options(const Experiment& experiment) {
-  for (const auto& [name, overrides] : experiment.options)
-    if (!is_in_use(experiment, name))
-      throw InvalidInput(experiment.info.name, "an option", "that of '" + name + "', which is not in use",
-                         "those of its groupers, detectors and descriptors");
-  for (const StudyLevel& level : experiment.info.levels) {
-    for (const std::string& method : experiment.info.methods)
-      find_grouper(method).configure(options_at(experiment, method, level));
-    const MatchSettings matching = matching_at(experiment, level);
-    matching.validate();
-    for (const double value : experiment.varied_values)
-      with_option(matching, experiment.varied, to_text(value)).validate();
-  }
-}
-
 /// Everything that can be judged before any work is done.
 void check_experiment(const TomlTable& table, const Experiment& experiment) {
   const ExperimentInfo& info = experiment.info;
@@ -258,9 +202,9 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
     const bool is_swept = experiment.sweep == Sweep::Option || experiment.sweep == Sweep::Choice;
     table.fail(is_swept ? "levels" : experiment.varied.empty() ? "options" : "vary", error.what());
   }
-  if (experiment.sweep == Sweep::Option && !is_in_use(experiment, split(info.attribute).first))
-    table.fail("attribute", "sweeps an option of " + split(info.attribute).first + ", which is not in use");
-  if (!experiment.varied.empty() && !is_in_use(experiment, split(experiment.varied).first))
+  if (experiment.sweep == Sweep::Option && !is_in_use(experiment, split_option(info.attribute).first))
+    table.fail("attribute", "sweeps an option of " + split_option(info.attribute).first + ", which is not in use");
+  if (!experiment.varied.empty() && !is_in_use(experiment, split_option(experiment.varied).first))
     table.fail("vary", experiment.varied + " is an option of what is not in use");
 }
 
@@ -268,43 +212,6 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
 
 std::string bin_label(double low, double high, bool is_last) {
   return "[" + to_text(low) + "," + to_text(high) + (is_last ? "]" : ")");
-}
-
-OptionOverrides options_at(const Experiment& experiment, const std::string& name, const StudyLevel& level) {
-  const auto found = experiment.options.find(name);
-  OptionOverrides options = found == experiment.options.end() ? OptionOverrides() : found->second;
-  if (experiment.sweep != Sweep::Option) return options;
-  const auto [swept, option] = split(experiment.info.attribute);
-  if (swept == name) options[option] = level.label;
-  return options;
-}
-
-MatchSettings matching_at(const Experiment& experiment, const StudyLevel& level) {
-  MatchSettings matching = experiment.matching;
-  if (experiment.sweep == Sweep::Choice) set_choice(matching, experiment.info.attribute, level.label);
-  for (const std::string& name : matching.in_use()) {
-    const OptionOverrides options = options_at(experiment, name, level);
-    if (!options.empty()) matching.options[name] = options;
-  }
-  return matching;
-}
-
-MatchSettings with_option(MatchSettings matching, const std::string& option, const std::string& value) {
-  const auto [name, field] = split(option);
-  matching.options[name][field] = value;
-  return matching;
-}
-
-void override_options(Experiment& experiment, const OptionsByName& options) {
-  for (const auto& [name, overrides] : options)
-    for (const auto& [option, value] : overrides) {
-      const std::string full = name + "." + option;
-      if (full == experiment.info.attribute || full == experiment.varied)
-        throw InvalidInput("--set", full, "swept by the experiment " + experiment.info.name, "another option");
-      if (option == "seed") throw InvalidInput("--set", full, value, "the key seed of the experiment");
-      experiment.options[name][option] = value;
-    }
-  check_options(experiment);
 }
 
 Experiment parse_experiment(const std::string& path, const std::string& text) {

@@ -54,18 +54,6 @@ Experiment parse_experiment(const std::string& path, const std::string& text);
 /// The names of the experiments of paper/experiments/, sorted.
 std::vector<std::string> built_in_experiments();
 
-/// The options that a grouper, detector or descriptor has in the experiment at a level, seeds left out.
-OptionOverrides options_at(const Experiment& experiment, const std::string& name, const StudyLevel& level);
-
-/// How pairs are matched at a level: with the options of what is in use there.
-MatchSettings matching_at(const Experiment& experiment, const StudyLevel& level);
-
-/// The same with another value of an option "name.option" of a detector or descriptor in use.
-MatchSettings with_option(MatchSettings matching, const std::string& option, const std::string& value);
-
-/// Changes options of an experiment as --set does. Throws InvalidInput for what the experiment sweeps or does not accept.
-void override_options(Experiment& experiment, const OptionsByName& options);
-
 /// "[65,70)" for an interval, "[90,95]" for the last.
 std::string bin_label(double low, double high, bool is_last);
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "apps/study/content_store.h"
+#include "apps/study/experiment_options.h"
 #include "grouping/registry.h"
 #include "io/line_reader.h"
 #include "io/toml_file.h"
