@@ -21,13 +21,13 @@ bool any_missing(const Numbers& numbers) {
   return std::any_of(numbers.begin(), numbers.end(), [](double number) { return std::isnan(number); });
 }
 
-Outcome outcome_of(double margin, bool or_equal) {
+RuleOutcome outcome_of(double margin, bool or_equal) {
   if (std::abs(margin) < kRounding) margin = 0;
   return {or_equal ? margin >= 0 : margin > 0, margin};
 }
 
 /// The lesser margin decides; of equal ones the one that fails.
-Outcome worse(const Outcome& a, const Outcome& b) {
+RuleOutcome worse(const RuleOutcome& a, const RuleOutcome& b) {
   if (std::isnan(a.margin) || std::isnan(b.margin)) return {false, std::numeric_limits<double>::quiet_NaN()};
   return {a.holds && b.holds, std::min(a.margin, b.margin)};
 }
@@ -62,12 +62,12 @@ double number_of(const Operand& operand, const Numbers& numbers, const std::vect
   }
 }
 
-Outcome compare_sides(const Comparison& comparison, double left, double right) {
+RuleOutcome compare_sides(const Comparison& comparison, double left, double right) {
   return outcome_of(comparison.is_greater ? left - right : right - left, comparison.or_equal);
 }
 
 /// rank(m) <= k: the k-th best other does not beat m. rank(m) >= k: the (k - 1)-th best other does.
-Outcome compare_rank(const Comparison& comparison, Numbers numbers, const Scale& scale) {
+RuleOutcome compare_rank(const Comparison& comparison, Numbers numbers, const Scale& scale) {
   if (any_missing(numbers)) return {false, std::numeric_limits<double>::quiet_NaN()};
   if (scale.lower_is_better)
     for (double& number : numbers) number = -number;
@@ -85,7 +85,7 @@ Outcome compare_rank(const Comparison& comparison, Numbers numbers, const Scale&
   return outcome_of(own + scale.tau - other(bound), true);
 }
 
-Outcome compare(const Comparison& comparison, const Numbers& numbers, const Scale& scale) {
+RuleOutcome compare(const Comparison& comparison, const Numbers& numbers, const Scale& scale) {
   if (comparison.left.kind == Kind::Rank) return compare_rank(comparison, numbers, scale);
   const auto right = [&](const std::vector<int>& left) {
     if (comparison.right.kind == Kind::Constant)
@@ -95,14 +95,14 @@ Outcome compare(const Comparison& comparison, const Numbers& numbers, const Scal
   };
   if (comparison.left.kind != Kind::All)
     return compare_sides(comparison, number_of(comparison.left, numbers, {}), right(comparison.left.methods));
-  Outcome all{true, kUnbounded};
+  RuleOutcome all{true, kUnbounded};
   for (std::size_t i = 0; i < numbers.size(); ++i)
     all = worse(all, compare_sides(comparison, numbers[i], right({static_cast<int>(i)})));
   return all;
 }
 
 /// The members are those that follow the `after` largest others, and all else is smaller.
-Outcome test_set(const std::vector<int>& members, const Numbers& numbers, int after, double ties) {
+RuleOutcome test_set(const std::vector<int>& members, const Numbers& numbers, int after, double ties) {
   if (any_missing(numbers)) return {false, std::numeric_limits<double>::quiet_NaN()};
   double least = kUnbounded, most = -kUnbounded;
   for (const int member : members) {
@@ -121,8 +121,8 @@ Outcome test_set(const std::vector<int>& members, const Numbers& numbers, int af
 
 }  // namespace
 
-Outcome test_numbers(const ClaimPart& part, const Numbers& numbers, const Scale& scale) {
-  Outcome outcome{true, kUnbounded};
+RuleOutcome test_numbers(const ClaimPart& part, const Numbers& numbers, const Scale& scale) {
+  RuleOutcome outcome{true, kUnbounded};
   for (const Comparison& comparison : part.is) outcome = worse(outcome, compare(comparison, numbers, scale));
   const double ties = part.ties ? scale.tau : 0;
   if (!part.largest.empty()) outcome = worse(outcome, test_set(part.largest, numbers, part.after, ties));
@@ -147,11 +147,11 @@ int needed_levels(Quantifier quantifier, int levels) {
   }
 }
 
-Outcome test_levels(Quantifier quantifier, std::vector<Outcome> levels) {
-  for (const Outcome& level : levels)
+RuleOutcome test_levels(Quantifier quantifier, std::vector<RuleOutcome> levels) {
+  for (const RuleOutcome& level : levels)
     if (std::isnan(level.margin)) return {false, level.margin};
   const auto needed = static_cast<std::size_t>(needed_levels(quantifier, static_cast<int>(levels.size())));
-  std::sort(levels.begin(), levels.end(), [](const Outcome& a, const Outcome& b) {
+  std::sort(levels.begin(), levels.end(), [](const RuleOutcome& a, const RuleOutcome& b) {
     return a.margin != b.margin ? a.margin > b.margin : a.holds && !b.holds;
   });
   return levels[needed - 1];

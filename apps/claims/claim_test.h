@@ -8,7 +8,7 @@
 namespace corral {
 
 /// The distance of a rule from failing or, if negative, from holding, in the unit of its numbers.
-struct Outcome {
+struct RuleOutcome {
   bool holds = false;
   double margin = 0;  ///< NaN if a number is missing
 };
@@ -22,12 +22,12 @@ struct Scale {
 
 /// Whether numbers, one for each method (or a single one), pass the comparisons and sets of a rule. Margins closer to 0 than
 /// 1e-12 are 0, so that "exactly tau" does not depend on rounding: it does not exceed tau.
-Outcome test_numbers(const ClaimPart& part, const std::vector<double>& numbers, const Scale& scale);
+RuleOutcome test_numbers(const ClaimPart& part, const std::vector<double>& numbers, const Scale& scale);
 
 /// At how many of the levels a rule has to hold.
 int needed_levels(Quantifier quantifier, int levels);
 /// Over the levels: the margin is that of the level that decides.
-Outcome test_levels(Quantifier quantifier, std::vector<Outcome> levels);
+RuleOutcome test_levels(Quantifier quantifier, std::vector<RuleOutcome> levels);
 
 /// 1 + the number of others that beat each.
 std::vector<int> ranks_of(const std::vector<double>& numbers, const Scale& scale);

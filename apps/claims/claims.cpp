@@ -98,18 +98,18 @@ struct Rule {
   const ClaimPart* part;
   ClaimMeasure measure;
 
-  std::vector<Outcome> levels(const Draws& draws) const {
-    std::vector<Outcome> outcomes;
+  std::vector<RuleOutcome> levels(const Draws& draws) const {
+    std::vector<RuleOutcome> outcomes;
     for (const auto& numbers : measure.numbers(draws))
       outcomes.push_back(test_numbers(*part, numbers, measure.scale()));
     return outcomes;
   }
-  Outcome outcome(const Draws& draws) const {
+  RuleOutcome outcome(const Draws& draws) const {
     return test_levels(part->take == Take::EachLevel ? part->where : Quantifier::Every, levels(draws));
   }
   Verdict verdict(const Draws& draws) const {
     if (!measure.reason().empty()) return Verdict::Undecidable;
-    const Outcome result = outcome(draws);
+    const RuleOutcome result = outcome(draws);
     if (std::isnan(result.margin)) return Verdict::Undecidable;
     return result.holds ? Verdict::Holds : Verdict::Fails;
   }
@@ -156,7 +156,7 @@ MarginUnit unit_of(const ClaimPart& part) {
   return {(part.of.is_time() ? "ln " : "") + part.of.measure->title};
 }
 
-std::string levels_text(const Rule& rule, const std::vector<Outcome>& outcomes) {
+std::string levels_text(const Rule& rule, const std::vector<RuleOutcome>& outcomes) {
   const std::vector<std::string> labels = rule.measure.labels();
   std::string holding;
   int count = 0;
@@ -172,7 +172,7 @@ PartVerdict judge_part(const Rule& rule, const Draws& draws) {
   verdict.is_note = rule.part->is_note;
   verdict.reason = rule.measure.reason();
   if (!verdict.reason.empty()) return verdict;
-  const Outcome outcome = rule.outcome(draws);
+  const RuleOutcome outcome = rule.outcome(draws);
   if (std::isnan(outcome.margin)) {
     verdict.reason = rule.part->over_pairs ? "too few pairs, or their numbers are not in the study"
                                            : "a number is missing: of a grouper, or at a level";

@@ -27,11 +27,11 @@ ClaimPart rule(const std::string& keys) {
       .parts.at(0);
 }
 
-Outcome test(const std::string& comparison, const Numbers& numbers, const Scale& scale = {0.01, false, false}) {
+RuleOutcome test(const std::string& comparison, const Numbers& numbers, const Scale& scale = {0.01, false, false}) {
   return test_numbers(rule("is = [\"" + comparison + "\"]"), numbers, scale);
 }
 
-void expect(const Outcome& outcome, bool holds, double margin) {
+void expect(const RuleOutcome& outcome, bool holds, double margin) {
   EXPECT_EQ(outcome.holds, holds);
   EXPECT_NEAR(outcome.margin, margin, 1e-12);
 }
@@ -126,7 +126,7 @@ TEST(ClaimTest, MissingNumbersDecideNothing) {
 }
 
 TEST(ClaimTest, CountsLevels) {
-  const Outcome yes{true, 0.2}, barely{true, 0.0}, no{false, -0.1};
+  const RuleOutcome yes{true, 0.2}, barely{true, 0.0}, no{false, -0.1};
   expect(test_levels(Quantifier::Every, {yes, barely}), true, 0);
   expect(test_levels(Quantifier::Every, {yes, no, barely}), false, -0.1);
   expect(test_levels(Quantifier::Most, {yes, no, barely}), true, 0);
