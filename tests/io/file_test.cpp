@@ -246,7 +246,7 @@ TEST(WriteFiles, EachHasAPlaceOfItsOwn) {
   EXPECT_THAT(io_error_of([&] {
                 write_files({{folder / "a", "1"}, {folder / "./a", "2"}});
               }),
-              HasSubstr("two outputs at once"));
+              HasSubstr("named for two outputs"));
   EXPECT_TRUE(folder.names().empty());
 }
 

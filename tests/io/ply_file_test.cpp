@@ -213,7 +213,7 @@ TEST(PlyHeader, NamesTheLineOfWhatItDoesNotKnow) {
   EXPECT_THAT(header(kVertex + "element vertex 3\n"), HasSubstr("line 7: element 'vertex' occurs twice"));
   EXPECT_THAT(header("property float x\n"), HasSubstr("line 3: found 'property float x', expected an element"));
   EXPECT_THAT(header(kVertex + "property long x\n"), HasSubstr("line 7: found the type 'long', expected char, uchar"));
-  EXPECT_THAT(header(kVertex + "property list float int a\n"), HasSubstr("line 7: the length of a list is 'float'"));
+  EXPECT_THAT(header(kVertex + "property list float int a\n"), HasSubstr("line 7: the length of a list is of type 'float'"));
   EXPECT_THAT(header(kVertex + "property list uchar int\n"),
               HasSubstr("line 7: found 'property list uchar int', expected"));
   EXPECT_THAT(header(kVertex + "property\n"), HasSubstr("line 7"));

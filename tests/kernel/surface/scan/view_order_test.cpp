@@ -135,7 +135,7 @@ TEST(TriangulateView, PointsBehindTheSensorAreRefused) {
   EXPECT_EQ(
       refusal(two, 1, {}),
       "triangulate_view: the sensor is at 0,0,0 with 2 of 40 points not in front of it, expected the position from "
-      "which all were seen (--sensor), or the way it looked from far away (--direction)");
+      "which all were seen (--sensor), or its viewing direction from far away (--direction)");
   EXPECT_EQ(refusal(two, 1, seen_along({0, 0, 1})), "");
   EXPECT_THAT(refusal(points_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}}), 1, {}), HasSubstr("4 of 4 points"));
 }
