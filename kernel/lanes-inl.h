@@ -66,10 +66,19 @@ struct Register {
       hn::StoreU(hn::DemoteTo(tag, raw), tag, to);
   }
 
-  /// Writes the numbers whose bits are set one behind the other, and anything behind them up to a register in all.
+  /// Writes the numbers whose bits are set one behind the other, and anything behind them up to a register in all. Compress
+  /// of other targets, and of doubles, reads tables that g++ copies to the stack at every call.
   HWY_INLINE void pack(unsigned which, T* to) const {
-    const std::uint64_t bits = which;
-    hn::StoreU(hn::CompressBits(raw, reinterpret_cast<const std::uint8_t*>(&bits)), Tag(), to);
+    if constexpr (HWY_TARGET == HWY_AVX3 && kN * sizeof(T) == 64) {
+      const hn::Repartition<std::uint32_t, Tag> words;
+      const std::uint64_t bits = sizeof(T) == 8 ? twice(which) : which;
+      const auto packed = hn::CompressBits(hn::BitCast(words, raw), reinterpret_cast<const std::uint8_t*>(&bits));
+      hn::StoreU(hn::BitCast(Tag(), packed), Tag(), to);
+    } else {
+      T numbers[kN];
+      hn::StoreU(raw, Tag(), numbers);
+      for (; which != 0; which &= which - 1) *to++ = numbers[hwy::Num0BitsBelowLS1Bit_Nonzero32(which)];
+    }
   }
 
   friend HWY_INLINE Register operator+(Register a, Register b) { return {hn::Add(a.raw, b.raw)}; }
@@ -100,6 +109,14 @@ struct Register {
 
  private:
   static constexpr bool kMinIsComparison = HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128;
+
+  /// Eight bits, each twice.
+  [[maybe_unused]] static HWY_INLINE std::uint64_t twice(unsigned bits) {
+    bits = (bits | bits << 4) & 0x0F0F;
+    bits = (bits | bits << 2) & 0x3333;
+    bits = (bits | bits << 1) & 0x5555;
+    return bits | bits << 1;
+  }
 
   template <class Integers>
   HWY_INLINE auto whole(Integers integers) const {
