@@ -2,7 +2,9 @@
 #include "kernel/surface/mesh/topology.h"
 
 // With OpenMesh 9, g++ 12 at -O3 gives false warnings of uninitialised values.
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 
 #include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>

@@ -73,7 +73,7 @@ TEST_F(Composition, DifferentObjectsThatDoNotTouchBeforeASensor) {
 
 TEST_F(Composition, PairsSpreadOverTheBins) {
   options_.scenes = 12;
-  VisibilityCounts counts, first;
+  VisibilityCounts counts;
   const std::vector<ComposedScene> scenes = compose_scenes(pointers_, options_, testing::on_three_threads);
   for (const ComposedScene& scene : scenes) {
     const PosedSurfaces posed = scene.posed(pointers_);
