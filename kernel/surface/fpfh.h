@@ -48,8 +48,8 @@ struct FpfhOptions {
 /// and each of the three histograms scaled to the sum 100, as in PCL. A value at the border of two bins is in that nearer to
 /// the middle.
 ///
-/// Source    [rusu2009fpfh]; order of the bins and scale as in PCL 1.13. R is that of SHOT, so that both describe the same
-///           support.
+/// Source    [rusu2009fpfh], after later descriptions: the paper itself was not at hand. Order of the bins and scale as in
+///           PCL 1.13. R is that of SHOT, so that both describe the same support.
 /// Cost      O(V m) time, m vertices within R, for all V vertices within R of a keypoint; about 150 bytes for each of them.
 ///           Any number of threads, and any numbering of the vertices, gives the same bits.
 /// Throws    InvalidInput if an option, the resolution or a keypoint is out of range, the normals are not as many as the

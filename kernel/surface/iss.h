@@ -54,8 +54,8 @@ struct IssOptions {
 /// A keypoint has the largest saliency of all vertices nearer than r_non_max, and at least `minimum_neighbors` vertices
 /// nearer than r_salient and nearer than r_non_max.
 ///
-/// Source    [zhong2009iss]; the values of all options but r_density are those of the example in the documentation of PCL's
-///           ISSKeypoint3D.
+/// Source    [zhong2009iss], after later descriptions: the paper itself was not at hand. The values of all options but
+///           r_density are those of the example in the documentation of PCL's ISSKeypoint3D.
 /// Cost      O(V m) time, m vertices within the largest radius; O(V) memory. Any number of threads gives the same bits.
 /// Throws    InvalidInput if an option or `resolution` is out of range, or if the largest radius holds over 2000 vertices on
 ///           average (and over 2e7 in all).

@@ -5,33 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "kernel/error.h"
-#include "tests/io/scratch.h"
+#include "tests/support/experiment_text.h"
 
 namespace corral {
 namespace {
 
+using testing::error_of;
 using ::testing::HasSubstr;
-using testing::io_error_of;
-
-constexpr char kGood[] = R"toml(name = "mine"
-dataset = "b3r"
-attribute = "noise_pr"
-levels = [0.05, 1]
-groupers = ["st", "gc"]
-[filter]
-density = ["", "1"]
-[options.gc]
-tolerance_pr = 2
-cluster = "clique"
-[options.harris]
-radius_pr = 2
-[matching]
-normals = "origin"
-)toml";
-
-std::string error_of(const std::string& text) {
-  return io_error_of([&] { parse_experiment("x.toml", text); });
-}
+using testing::kGood;
 
 TEST(ExperimentOptions, AnOptionIsSweptLevelByLevel) {
   const Experiment experiment = parse_experiment("x.toml", testing::replaced(kGood, "noise_pr", "st.similarity"));

@@ -6,7 +6,7 @@
 
 #include "apps/study/experiment_options.h"
 #include "grouping/registry.h"
-#include "tests/io/scratch.h"
+#include "tests/support/experiment_text.h"
 
 namespace corral {
 namespace {
@@ -14,28 +14,10 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using testing::error_of;
 using ::testing::HasSubstr;
 using testing::io_error_of;
-
-constexpr char kGood[] = R"toml(name = "mine"
-dataset = "b3r"
-attribute = "noise_pr"
-levels = [0.05, 1]
-groupers = ["st", "gc"]
-[filter]
-density = ["", "1"]
-[options.gc]
-tolerance_pr = 2
-cluster = "clique"
-[options.harris]
-radius_pr = 2
-[matching]
-normals = "origin"
-)toml";
-
-std::string error_of(const std::string& text) {
-  return io_error_of([&] { parse_experiment("x.toml", text); });
-}
+using testing::kGood;
 
 std::string with(const std::string& from, const std::string& to) {
   return error_of(testing::replaced(kGood, from, to));
