@@ -21,7 +21,7 @@ std::string ending_of(const std::string& path) {
   return ending;
 }
 
-using Parser = Mesh (*)(const std::string& path, std::string_view content);
+using Parser = StoredMesh (*)(const std::string& path, std::string_view content);
 struct MeshFormat {
   const char* ending;
   Parser parse;
@@ -72,7 +72,7 @@ std::string mesh_endings() {
 
 bool is_mesh_name(const std::string& path) { return parser_of(path) != nullptr; }
 
-Mesh read_mesh(const std::string& path) {
+StoredMesh read_mesh(const std::string& path) {
   const Parser parser = parser_of(path);
   const std::string content = read_file(path);
   if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in " + mesh_endings());

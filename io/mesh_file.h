@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,12 @@ std::string mesh_endings();
 /// Whether read_mesh knows the ending of the name.
 bool is_mesh_name(const std::string& path);
 
+/// A mesh with what else its file says.
+struct StoredMesh : Mesh {
+  std::optional<Eigen::Vector3d> sensor = {};  ///< where it stood, mesh units, if the file names the place
+  std::vector<std::string> notes = {};  ///< what was left out or skipped, with counts: a sentence each, no full stop
+};
+
 /// Reads a mesh or a point cloud; the ending of the name gives the format: .ply (ASCII and both binary forms), .off, .obj,
 /// .stl (ASCII and binary), and for clouds only .xyz and .pcd (ASCII and binary, not compressed).
 /// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
@@ -26,7 +33,7 @@ bool is_mesh_name(const std::string& path);
 ///        (VIEWPOINT) is not applied.
 /// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, more or
 ///           less than the header promises, a coordinate that is not finite, a face with a vertex that does not exist.
-Mesh read_mesh(const std::string& path);
+StoredMesh read_mesh(const std::string& path);
 
 /// The mesh as ASCII PLY in double precision; reading it back gives the same mesh.
 std::string ply_text(const Mesh& mesh);
@@ -41,12 +48,12 @@ void write_mesh(const std::string& path, const Mesh& mesh);
 void check_ply_name(const std::string& path);
 
 // One parser per format, on the whole content of a file; `path` is used in messages.
-Mesh parse_ply(const std::string& path, std::string_view content);
-Mesh parse_off(const std::string& path, std::string_view content);
-Mesh parse_obj(const std::string& path, std::string_view content);
-Mesh parse_stl(const std::string& path, std::string_view content);
-Mesh parse_xyz(const std::string& path, std::string_view content);
-Mesh parse_pcd(const std::string& path, std::string_view content);
+StoredMesh parse_ply(const std::string& path, std::string_view content);
+StoredMesh parse_off(const std::string& path, std::string_view content);
+StoredMesh parse_obj(const std::string& path, std::string_view content);
+StoredMesh parse_stl(const std::string& path, std::string_view content);
+StoredMesh parse_xyz(const std::string& path, std::string_view content);
+StoredMesh parse_pcd(const std::string& path, std::string_view content);
 
 /// The most vertices or faces a mesh may have: they are counted in int.
 constexpr long long kMaximumCount = 2147483647;

@@ -28,7 +28,7 @@ int corner_of(const LineReader& reader, std::string_view field, std::int64_t ver
 
 }  // namespace
 
-Mesh parse_obj(const std::string& path, std::string_view content) {
+StoredMesh parse_obj(const std::string& path, std::string_view content) {
   LineReader reader(path, content, '#');
   std::vector<double> coordinates;
   TriangleBuilder triangles;
@@ -52,7 +52,7 @@ Mesh parse_obj(const std::string& path, std::string_view content) {
     }
   }
   if (coordinates.empty()) reader.fail("no vertex line, expected lines like 'v 0 0 0'");
-  Mesh mesh;
+  StoredMesh mesh;
   mesh.vertices = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
       coordinates.data(), static_cast<Eigen::Index>(coordinates.size() / 3), 3);
   mesh.triangles = triangles.build();

@@ -41,10 +41,10 @@ Counts read_counts(LineReader& reader) {
 
 }  // namespace
 
-Mesh parse_off(const std::string& path, std::string_view content) {
+StoredMesh parse_off(const std::string& path, std::string_view content) {
   LineReader reader(path, content, '#');
   const Counts counts = read_counts(reader);
-  Mesh mesh;
+  StoredMesh mesh;
   mesh.vertices.resize(counts.vertices, 3);
   for (Eigen::Index row = 0; row < counts.vertices; ++row) {
     reader.need("vertex " + std::to_string(row) + " of " + std::to_string(counts.vertices));

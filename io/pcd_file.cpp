@@ -25,9 +25,9 @@ class CloudBuilder {
              ", expected three finite coordinates, or three nan where the sensor saw nothing";
     return "";
   }
-  Mesh take() {
+  StoredMesh take() {
     points_.conservativeResize(used_, 3);
-    Mesh cloud;
+    StoredMesh cloud;
     cloud.vertices = std::move(points_);
     return cloud;
   }
@@ -37,7 +37,7 @@ class CloudBuilder {
   Eigen::Index used_ = 0;
 };
 
-Mesh read_text(const PcdHeader& header, LineReader& reader) {
+StoredMesh read_text(const PcdHeader& header, LineReader& reader) {
   const std::size_t values = header.values_per_point(), bytes = reader.rest().size();
   // The shortest value takes two bytes: a digit and a separator.
   if (static_cast<std::size_t>(header.points) > bytes / (2 * values))
@@ -72,7 +72,8 @@ bool is_page_filler(std::string_view left, std::size_t header_bytes) {
   return false;
 }
 
-Mesh read_binary(const PcdHeader& header, std::string_view body, const std::string& path, std::size_t header_bytes) {
+StoredMesh read_binary(const PcdHeader& header, std::string_view body, const std::string& path,
+                       std::size_t header_bytes) {
   const auto points = static_cast<std::size_t>(header.points);
   const std::size_t stride = header.bytes_per_point();
   if (points > body.size() / stride)
@@ -101,7 +102,7 @@ Mesh read_binary(const PcdHeader& header, std::string_view body, const std::stri
 
 }  // namespace
 
-Mesh parse_pcd(const std::string& path, std::string_view content) {
+StoredMesh parse_pcd(const std::string& path, std::string_view content) {
   LineReader reader(path, content, '#');
   const PcdHeader header = parse_pcd_header(reader);
   if (header.encoding == PcdEncoding::Ascii) return read_text(header, reader);

@@ -117,7 +117,7 @@ class MeshReader {
     mesh_.triangles = triangles_.build();
   }
 
-  Mesh take() { return std::move(mesh_); }
+  StoredMesh take() { return std::move(mesh_); }
 
  private:
   /// An element cannot hold more than the bytes that are there.
@@ -192,7 +192,7 @@ class MeshReader {
 
   const std::string& path_;
   Body body_;
-  Mesh mesh_;
+  StoredMesh mesh_;
   std::int64_t vertices_ = 0;
   TriangleBuilder triangles_;
   std::vector<double> list_;
@@ -201,7 +201,7 @@ class MeshReader {
 
 }  // namespace
 
-Mesh parse_ply(const std::string& path, std::string_view content) {
+StoredMesh parse_ply(const std::string& path, std::string_view content) {
   LineReader reader(path, content);
   const PlyHeader header = parse_ply_header(reader);
   switch (header.encoding) {

@@ -36,7 +36,7 @@ class FacetSoup {
   }
 
   /// Sorting rather than hashing, so that no file can cause quadratic time.
-  Mesh weld() const {
+  StoredMesh weld() const {
     const auto corner = [&](int i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
     Indices order(corners_.size());
     std::iota(order.begin(), order.end(), 0);
@@ -52,8 +52,8 @@ class FacetSoup {
 
  private:
   /// Vertices are numbered in the order in which the file first names them.
-  Mesh numbered(const Indices& first) const {
-    Mesh mesh;
+  StoredMesh numbered(const Indices& first) const {
+    StoredMesh mesh;
     int vertices = 0;
     for (std::size_t i = 0; i < first.size(); ++i) vertices += first[i] == static_cast<int>(i);
     mesh.vertices.resize(vertices, 3);
@@ -85,7 +85,7 @@ bool is_binary(std::string_view content) {
   return content.find('\0') != std::string_view::npos;
 }
 
-Mesh parse_binary(const std::string& path, std::string_view content) {
+StoredMesh parse_binary(const std::string& path, std::string_view content) {
   if (content.size() < kHeader)
     throw IoError(path, "byte " + std::to_string(content.size()),
                   "the file ends here, expected the " + std::to_string(kHeader) + " bytes of a binary header");
@@ -128,7 +128,7 @@ class TextReader {
   TextReader(const std::string& path, std::string_view content) : reader_(path, content) {}
 
   /// One solid after another; what follows the words solid and endsolid is a name.
-  Mesh read() {
+  StoredMesh read() {
     reader_.need("the keyword solid");
     do {
       if (!is_word(reader_.fields()[0], "solid")) refuse("the keyword solid");
@@ -182,7 +182,7 @@ class TextReader {
 
 }  // namespace
 
-Mesh parse_stl(const std::string& path, std::string_view content) {
+StoredMesh parse_stl(const std::string& path, std::string_view content) {
   return is_binary(content) ? parse_binary(path, content) : TextReader(path, content).read();
 }
 

@@ -13,7 +13,7 @@ const std::vector<std::string_view>& columns(LineReader& reader) {
 
 }  // namespace
 
-Mesh parse_xyz(const std::string& path, std::string_view content) {
+StoredMesh parse_xyz(const std::string& path, std::string_view content) {
   LineReader reader(path, content, '#');
   std::vector<double> coordinates;
   std::size_t width = 0, first_line = 0;
@@ -32,7 +32,7 @@ Mesh parse_xyz(const std::string& path, std::string_view content) {
     for (std::size_t axis = 0; axis < 3; ++axis) coordinates.push_back(reader.finite_number(fields[axis]));
   }
   if (coordinates.empty()) reader.fail("no point, expected lines like '0 0 0'");
-  Mesh cloud;
+  StoredMesh cloud;
   cloud.vertices = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
       coordinates.data(), static_cast<Eigen::Index>(coordinates.size() / 3), 3);
   return cloud;

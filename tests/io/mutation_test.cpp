@@ -64,7 +64,7 @@ int survive(const std::string& content, std::uint64_t seed, const std::function<
 }
 
 void survive_as_mesh(const std::string& content, std::uint64_t seed,
-                     Mesh (*parse)(const std::string&, std::string_view)) {
+                     StoredMesh (*parse)(const std::string&, std::string_view)) {
   ASSERT_NO_THROW(parse("mesh", content).validate("undamaged"));
   survive(content, seed, [parse](const std::string& bad) {
     const Mesh mesh = parse("mesh", bad);

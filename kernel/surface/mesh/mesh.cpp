@@ -19,6 +19,10 @@ void Mesh::validate(const std::string& who) const {
       if (triangles(face, corner) < 0 || triangles(face, corner) >= vertices.rows())
         throw InvalidInput(who, "face " + std::to_string(face), "of vertex " + std::to_string(triangles(face, corner)),
                            "vertices 0 .. " + std::to_string(vertices.rows() - 1));
+  if (normals.rows() > 0 && normals.rows() != vertices.rows())
+    throw InvalidInput(who, "normals", std::to_string(normals.rows()),
+                       std::to_string(vertices.rows()) + ", one a vertex");
+  if (!normals.allFinite()) throw InvalidInput(who, "normals", "not finite", "three finite components each");
 }
 
 Indices rows_by_place(const Points& points) {

@@ -15,8 +15,10 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3>;
 struct Mesh {
   Points vertices;      ///< V x 3, mesh units
   Triangles triangles;  ///< F x 3, zero-based rows of `vertices`; F = 0 for a cloud
+  Points normals = {};  ///< V x 3, of any length, zero where unknown; or no rows: none are known
 
-  /// Throws InvalidInput if a coordinate is not finite or a triangle names a vertex that does not exist.
+  /// Throws InvalidInput if a coordinate is not finite, a triangle names a vertex that does not exist, or there are normals
+  /// but not one for each vertex.
   void validate(const std::string& who) const;
 };
 
