@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,9 +15,8 @@ std::string mesh_endings();
 /// Whether read_mesh knows the ending of the name.
 bool is_mesh_name(const std::string& path);
 
-/// A mesh with what else its file says.
+/// A mesh with what its reader has to say.
 struct StoredMesh : Mesh {
-  std::optional<Eigen::Vector3d> sensor = {};  ///< where it stood, mesh units, if the file names the place
   std::vector<std::string> notes = {};  ///< what was left out or skipped, with counts: a sentence each, no full stop
 };
 

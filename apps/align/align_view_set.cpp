@@ -45,6 +45,7 @@ class SetAlignment {
     settings.threads = 1;
     parallel_(views_.size(), [&](int i) {
       MatchSettings own = settings;
+      own.normals = NormalSide::Mesh;
       const Eigen::Vector3d sensor = views_.sensor(i);
       own.sensor.assign(sensor.data(), sensor.data() + 3);
       features[static_cast<std::size_t>(i)] = describe_surface(views_.mesh(i), views_.resolution(), own);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernel/surface/normals.h"
+#include "kernel/surface/scan/view_side.h"
 #include "kernel/surface/scan/visibility.h"
 #include "kernel/surface/search/resolution.h"
 #include "refine/refine_surface.h"
@@ -19,8 +20,9 @@ constexpr double kFarPr = 1e5;             // a sensor beyond this counts as inf
 
 }  // namespace
 
-ViewSet::ViewSet(const std::vector<Mesh>& views, const ViewOptions& sensor, const ParallelFor& parallel)
-    : sensor_(sensor), views_(views.size()) {
+ViewSet::ViewSet(const std::vector<Mesh>& views, const std::optional<ViewOptions>& sensor, const ParallelFor& parallel)
+    : views_(views.size()) {
+  for (const Mesh& view : views) sensors_.push_back(sensor ? *sensor : view_side(view));
   std::vector<double> resolutions(views.size());
   parallel(size(), [&](int i) {
     const auto view = static_cast<std::size_t>(i);
@@ -29,21 +31,24 @@ ViewSet::ViewSet(const std::vector<Mesh>& views, const ViewOptions& sensor, cons
   for (const double each : resolutions) resolution_ += each / static_cast<double>(views.size());
   parallel(size(), [&](int i) {
     const auto view = static_cast<std::size_t>(i);
-    views_[view].emplace(prepare(views[view]));
+    views_[view].emplace(prepare(views[view], sensors_[view]));
   });
 }
 
-ViewSet::Prepared ViewSet::prepare(const Mesh& mesh) const {
+ViewSet::Prepared ViewSet::prepare(const Mesh& mesh, const ViewOptions& sensor) const {
   Mesh faced = mesh;
-  if (mesh.triangles.rows() == 0) faced.triangles = triangulate_view(mesh.vertices, resolution_, sensor_).triangles;
-  Points normals = estimate_normals(faced);
+  if (mesh.triangles.rows() == 0) faced.triangles = triangulate_view(mesh.vertices, resolution_, sensor).triangles;
+  NormalOptions by_faces;
+  by_faces.side = NormalSide::Mesh;
+  Points normals = estimate_normals(faced, by_faces);
   return {std::move(faced), std::move(normals), PointTree(mesh.vertices),
-          DepthImage(mesh.vertices, kCellPr * resolution_, sensor_)};
+          DepthImage(mesh.vertices, kCellPr * resolution_, sensor)};
 }
 
 Eigen::Vector3d ViewSet::sensor(int view) const {
-  if (!sensor_.direction) return sensor_.sensor;
-  return vertex_centroid(mesh(view)) - kFarPr * resolution_ * sensor_.direction->stableNormalized();
+  const ViewOptions& from = side(view);
+  if (!from.direction) return from.sensor;
+  return vertex_centroid(mesh(view)) - kFarPr * resolution_ * from.direction->stableNormalized();
 }
 
 double ViewSet::share_in_front(int a, int b, const RigidTransform& b_from_a) const {

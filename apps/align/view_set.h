@@ -23,12 +23,14 @@ struct ViewAgreement {
 class ViewSet {
  public:
   /// The meshes must outlive this; one without faces gets those of triangulate_view. `sensor`: position or viewing direction
-  /// of the sensor of every view. Throws InvalidInput: a view that is not in front of its sensor, or a single point.
-  ViewSet(const std::vector<Mesh>& views, const ViewOptions& sensor, const ParallelFor& parallel);
+  /// of the sensor of every view; where it is not known, that of view_side for each.
+  /// Throws    InvalidInput: a view that is not in front of its sensor, or a single point.
+  ViewSet(const std::vector<Mesh>& views, const std::optional<ViewOptions>& sensor, const ParallelFor& parallel);
 
   int size() const { return static_cast<int>(views_.size()); }
   double resolution() const { return resolution_; }  ///< mean of all views, mesh units per pr
   const Mesh& mesh(int view) const { return at(view).mesh; }
+  const ViewOptions& side(int view) const { return sensors_[static_cast<std::size_t>(view)]; }
   Eigen::Vector3d sensor(int view) const;  ///< a position from which the view may have been taken, mesh units
 
   /// Whether one view contradicts the pose: tested first, because it is cheap.
@@ -47,9 +49,9 @@ class ViewSet {
     DepthImage seen;
   };
   const Prepared& at(int view) const { return *views_[static_cast<std::size_t>(view)]; }
-  Prepared prepare(const Mesh& mesh) const;
+  Prepared prepare(const Mesh& mesh, const ViewOptions& sensor) const;
 
-  ViewOptions sensor_;
+  std::vector<ViewOptions> sensors_;
   double resolution_ = 0;
   std::vector<std::optional<Prepared>> views_;
 };

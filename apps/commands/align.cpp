@@ -6,12 +6,14 @@
 
 #include "apps/align/align_view_set.h"
 #include "apps/align/alignment_files.h"
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
+#include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "kernel/error.h"
+#include "kernel/surface/scan/view_side.h"
 
 namespace corral {
 namespace {
@@ -34,12 +36,38 @@ std::vector<std::string> view_names(const std::vector<std::string>& paths) {
   return names;
 }
 
+std::string in_words(const ViewOptions& side) {
+  const Eigen::Vector3d vector = side.direction.value_or(side.sensor);
+  const std::string text = fixed(vector.x(), 2) + "," + fixed(vector.y(), 2) + "," + fixed(vector.z(), 2);
+  return side.direction ? "looks along " + text : "stands at " + text;
+}
+
+/// Where the sensor of each view is taken to be, unless at the origin; and where that sees the back of the surface.
+void say_sides(const std::vector<std::string>& paths, const std::vector<Mesh>& meshes, const ViewSet& views,
+               bool are_given) {
+  for (int view = 0; view < views.size(); ++view) {
+    const auto i = static_cast<std::size_t>(view);
+    const ViewOptions& side = views.side(view);
+    const auto front = front_share(meshes[i], side);
+    if (!are_given && (side.direction || !side.sensor.isZero(0)))
+      say("note: " + paths[i] + ": the sensor " + in_words(side) + ", as the file says");
+    if (!front || *front >= 0.5) continue;
+    say("warning: " + paths[i] + ": the sensor sees the back of " + fixed(100 * (1 - *front), 0) +
+        " % of the faces or normals in the file, by which it " + in_words(view_side(meshes[i])));
+  }
+}
+
 int align(const Settings& settings) {
   if (settings.views.size() < 2) throw UsageError("expected at least two views");
   const std::vector<std::string> names = view_names(settings.views);
-  const ViewOptions sensor = view_options(settings.sensor);
+  std::optional<ViewOptions> sensor;
+  if (settings.sensor.are_given()) sensor = view_options(settings.sensor);
+  std::vector<std::string> inputs = settings.views, outputs = {settings.output + "/pairs.csv"};
+  inputs.push_back(settings.poses);
+  for (const std::string& name : names) outputs.push_back(settings.output + "/" + name + ".xf");
+  keep_inputs(inputs, outputs);
   std::vector<Mesh> meshes;
-  for (const std::string& path : settings.views) meshes.push_back(read_surface(path));
+  for (const std::string& path : settings.views) meshes.push_back(read_input(path));
   std::vector<ViewPair> poses;
   if (!settings.poses.empty()) poses = read_view_pairs(settings.poses, names);
   make_folder(settings.output + "/poses");
@@ -48,6 +76,7 @@ int align(const Settings& settings) {
   const ParallelFor parallel = workers(settings.threads);
   auto progress = std::make_unique<Progress>(align_steps(static_cast<int>(meshes.size())));
   const ViewSet views(meshes, sensor, parallel);
+  say_sides(settings.views, meshes, views, sensor.has_value());
   const AlignedViews aligned =
       settings.poses.empty()
           ? align_view_set(views, {}, parallel,
@@ -64,6 +93,11 @@ int align(const Settings& settings) {
   const int parts = 1 + *std::max_element(aligned.part.begin(), aligned.part.end());
   if (parts > 1)
     say("note: the views form " + std::to_string(parts) + " unconnected parts; each has the frame of its first view");
+  if (parts == views.size())
+    say("hint: no two views were connected: where the sensor stood decides on the side of the surfaces and on what "
+        "hides "
+        "what; tell it with --sensor or --direction" +
+        std::string(sensor ? ", which may be the opposite" : ""));
   if (!aligned.converged) say("note: the pose graph did not converge");
   return kOk;
 }
@@ -74,7 +108,8 @@ void add_align(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("align", "Views of one object into one frame, with a verdict on every pair");
   auto settings = std::make_shared<Settings>();
   command
-      ->add_option("views", settings->views, "Range scans; lists of points (.txt too) get faces as by 'corral triangulate'")
+      ->add_option("views", settings->views,
+                   "Range scans; lists of points (.txt too) get faces as by 'corral triangulate'")
       ->type_name("FILE")
       ->required();
   command->add_option("-o,--output", settings->output, "Folder for <view>.xf (world from view), pairs.csv and poses/")

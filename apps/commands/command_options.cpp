@@ -60,12 +60,17 @@ void add_match_options(CLI::App& command, MatchSettings& settings) {
   option("--descriptor", settings.descriptor, "Features; 'corral descriptors' has their options")
       ->type_name(names_of(descriptors()));
   add_fields(command, settings, "Matching");
-  option("--sensor", settings.sensor, "Where the sensor stood, in mesh units")
+  option("--sensor", settings.sensor, "Where the sensor stood, in mesh units: normals point to it")
       ->delimiter(',')
       ->expected(3)
-      ->default_str("0,0,0")
       ->type_name("X,Y,Z");
   option("--threads", settings.threads, "0: as many as there are processors; results do not depend on it");
+}
+
+void add_drop_stray(CLI::App& command, bool& drop_stray) {
+  command
+      .add_flag("--drop-stray", drop_stray, "Leave out lone vertices, further than 20 median spacings from all others")
+      ->group("Matching");
 }
 
 void check_usage(const MatchSettings& settings) {
@@ -151,9 +156,10 @@ void add_threads(CLI::App& command, int& threads) {
 }
 
 void add_sensor_options(CLI::App& command, SensorSettings& settings) {
-  auto* sensor = command.add_option("--sensor", settings.sensor, "Position of the sensor, mesh units")
-                     ->type_name("X,Y,Z")
-                     ->capture_default_str();
+  auto* sensor = command
+                     .add_option("--sensor", settings.sensor,
+                                 "Position of the sensor, mesh units (default: as the file says, else the origin)")
+                     ->type_name("X,Y,Z");
   command
       .add_option("--direction", settings.direction,
                   "Viewing direction of the sensor, if it is far away or its position is unknown")
@@ -163,7 +169,7 @@ void add_sensor_options(CLI::App& command, SensorSettings& settings) {
 
 ViewOptions view_options(const SensorSettings& settings) {
   ViewOptions options;
-  options.sensor = parse_vector("--sensor", settings.sensor);
+  if (settings.sensor) options.sensor = parse_vector("--sensor", *settings.sensor);
   if (settings.direction) {
     options.direction = parse_vector("--direction", *settings.direction);
     if (options.direction->isZero(0)) throw UsageError("--direction: expected a vector that is not zero");

@@ -18,6 +18,9 @@ namespace corral {
 void add_match_options(CLI::App& command, MatchSettings& settings);
 void check_usage(const MatchSettings& settings);
 
+/// --drop-stray, for read_input().
+void add_drop_stray(CLI::App& command, bool& drop_stray);
+
 /// --set NAME.OPTION=VALUE, as typed.
 void add_set_option(CLI::App& command, std::vector<std::string>& set);
 
@@ -43,8 +46,9 @@ void add_threads(CLI::App& command, int& threads);
 
 /// --sensor and --direction, as typed.
 struct SensorSettings {
-  std::string sensor = "0,0,0";
-  std::optional<std::string> direction;
+  std::optional<std::string> sensor, direction;  ///< one of them at most
+
+  bool are_given() const { return sensor || direction; }
 };
 void add_sensor_options(CLI::App& command, SensorSettings& settings);
 ViewOptions view_options(const SensorSettings& settings);

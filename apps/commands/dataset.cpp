@@ -2,6 +2,7 @@
 // corral dataset: check, list and measure data sets; dataset_make.cpp and dataset_import.cpp make and import them.
 #include <algorithm>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/dataset/check_dataset.h"
 #include "apps/dataset/measure_dataset.h"
@@ -32,18 +33,23 @@ int check(const CheckSettings& settings) {
   if (settings.json) {
     Json list = Json::array();
     for (const Finding& each : findings)
-      list.push_back({{"pair", each.pair}, {"file", each.file}, {"problem", each.problem}});
+      list.push_back(
+          {{"pair", each.pair}, {"file", each.file}, {"problem", each.problem}, {"is_error", each.is_error}});
     put("", Json{{"name", dataset.name}, {"pairs", dataset.pairs.size()}, {"findings", list}});
   } else {
     std::string text;
     for (const Finding& each : findings)
-      text += each.pair + (each.file.empty() ? "" : "/" + each.file) + ": " + each.problem + "\n";
+      text += each.pair + (each.file.empty() ? "" : "/" + each.file) + ": " + (each.is_error ? "" : "note: ") +
+              each.problem + "\n";
     put("", text);
   }
+  const auto errors =
+      std::count_if(findings.begin(), findings.end(), [](const Finding& finding) { return finding.is_error; });
+  const auto notes = static_cast<std::ptrdiff_t>(findings.size()) - errors;
   say(settings.folder + ": " + std::to_string(dataset.pairs.size()) + " pairs, " +
-      (findings.empty() ? "no problems"
-                        : std::to_string(findings.size()) + (findings.size() == 1 ? " problem" : " problems")));
-  return findings.empty() ? kOk : kBadInput;
+      (errors == 0 ? "no problems" : std::to_string(errors) + (errors == 1 ? " problem" : " problems")) +
+      (notes == 0 ? "" : ", " + std::to_string(notes) + (notes == 1 ? " note" : " notes")));
+  return errors == 0 ? kOk : kBadInput;
 }
 
 Json to_json(const PublishedSet& set) {
@@ -151,6 +157,10 @@ std::string histograms_text(const std::vector<PairMeasures>& measured) {
 
 int measure_all(const MeasureSettings& settings) {
   const Dataset dataset = read_dataset(settings.folder);
+  std::vector<std::string> inputs = {dataset.path("pairs.csv"), dataset.path("dataset.toml")};
+  for (const DatasetPair& pair : dataset.pairs)
+    for (const std::string& file : {pair.source, pair.target, pair.truth}) inputs.push_back(dataset.path(file));
+  keep_inputs(inputs, {settings.output});
   if (!settings.output.empty()) check_writable(settings.output);
   if (settings.write) check_writable(dataset.path("pairs.csv"));
   std::vector<PairMeasures> measured;
@@ -205,8 +215,10 @@ void add_measure(CLI::App& dataset, Action& action) {
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "Values and histograms as JSON on standard output");
   command->footer(
-      "overlap: vertices with a vertex of the other surface within 2 pr; the smaller of the two counts over the smaller\n"
-      "number of vertices. occlusion: 1 - share of the source's area that lies within 2 pr of the target; clutter: the\n"
+      "overlap: vertices with a vertex of the other surface within 2 pr; the smaller of the two counts over the "
+      "smaller\n"
+      "number of vertices. occlusion: 1 - share of the source's area that lies within 2 pr of the target; clutter: "
+      "the\n"
       "same for the target.\n"
       "Examples:\n  corral dataset measure data/mine --output measured.csv\n"
       "  corral dataset measure data/mine --matches --write");

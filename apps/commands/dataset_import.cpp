@@ -41,7 +41,8 @@ void add_b3r(CLI::App& import, Action& action) {
   command->add_option("--seed", settings->options.seed, "Seed of noise and density")->capture_default_str();
   add_threads(*command, settings->threads);
   command->footer(
-      "'corral dataset list' shows the layout; missing parts are reported and left out. An interrupted command continues\n"
+      "'corral dataset list' shows the layout; missing parts are reported and left out. An interrupted command "
+      "continues\n"
       "when it is repeated.\n"
       "Example:\n  corral dataset import b3r ~/b3r -o data/b3r");
   command->callback([settings, &action] {
@@ -96,9 +97,8 @@ void add_u3m(CLI::App& import, Action& action) {
   auto settings = std::make_shared<Settings>();
   add_folders(*command, settings->options.folder, settings->options.output);
   command
-      ->add_option(
-          "--truth", settings->options.truth,
-          "Use published transforms instead: VIEW-to-ANYTHING.xf into one frame, or VIEW-to-VIEW.xf")
+      ->add_option("--truth", settings->options.truth,
+                   "Use published transforms instead: VIEW-to-ANYTHING.xf into one frame, or VIEW-to-VIEW.xf")
       ->type_name("FOLDER");
   command
       ->add_option("--object", settings->options.object,
@@ -107,7 +107,8 @@ void add_u3m(CLI::App& import, Action& action) {
   add_sensor_options(*command, settings->sensor);
   add_threads(*command, settings->threads);
   command->footer(
-      "Views are meshes, or lists of points seen by a sensor. Pairs that overlap by 30 to 90 % are kept; doubtful ones\n"
+      "Views are meshes, or lists of points seen by a sensor. Pairs that overlap by 30 to 90 % are kept; doubtful "
+      "ones\n"
       "are reported.\n"
       "Examples:\n  corral dataset import u3m ~/u3m -o data/u3m\n"
       "  corral dataset import u3m ~/u3m/views -o data/u3m --truth ~/u3m/gt");

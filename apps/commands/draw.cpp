@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <numeric>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/picture/pair_picture.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
@@ -34,12 +34,12 @@ std::string title_of(const std::string& path) {
 
 void check(const Settings& settings) {
   check_threshold(settings.threshold_pr);
-  if (settings.matches.empty() == settings.poses.empty())
-    throw UsageError("expected either --matches or --pose");
+  if (settings.matches.empty() == settings.poses.empty()) throw UsageError("expected either --matches or --pose");
   if (settings.matches.empty() && !settings.groups.empty()) throw UsageError("--group needs --matches");
   if (settings.width < 200 || settings.width > 3000) throw UsageError("--width: expected 200 to 3000 pixels");
   if (std::filesystem::path(settings.output).extension() != ".png")
     throw UsageError("--output " + settings.output + ": expected a name that ends in .png");
+  keep_inputs({settings.source, settings.target, settings.matches, settings.truth}, {settings.output});
   check_writable(settings.output);
 }
 
@@ -90,8 +90,8 @@ int draw(const Settings& settings) {
   progress.begin("surfaces");
   PairScene scene;
   if (!settings.truth.empty()) scene.truth = read_transform(settings.truth);
-  scene.source = painted_surface(read_surface(settings.source));
-  scene.target = painted_surface(read_surface(settings.target));
+  scene.source = painted_surface(read_input(settings.source));
+  scene.target = painted_surface(read_input(settings.target));
   progress.begin("picture");
   const Image picture = settings.poses.empty() ? draw_groups(scene, settings) : draw_poses(scene, settings);
   write_file(settings.output, png_bytes(picture));
@@ -110,7 +110,8 @@ void add_draw(CLI::App& app, Action& action) {
   command->add_option("--group", settings->groups, "Selection from it; several give a sheet of pictures")
       ->type_name("FILE");
   command
-      ->add_option("--pose", settings->poses, "Draws the source aligned with the target by this pose; several side by side")
+      ->add_option("--pose", settings->poses,
+                   "Draws the source aligned with the target by this pose; several side by side")
       ->type_name("FILE");
   command
       ->add_option(

@@ -24,9 +24,11 @@ struct Settings {
   bool dense = false, json = false;
 };
 
+constexpr std::size_t kMostWarnings = 5;
+
 /// What is shown of a grouper in an experiment: the mean of its levels.
 struct Overview {
-  int levels = 0, pairs = 0, excluded = 0, empty = 0, failed = 0;
+  int levels = 0, pairs = 0, excluded = 0, misfit = 0, empty = 0, failed = 0;
   std::vector<double> sums;  ///< of the headline measures
 };
 
@@ -38,13 +40,14 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
     const auto key = std::make_pair(row.experiment, row.method);
     if (!cells.count(key)) order.push_back(key);
     Overview& cell = cells[key];
-    cell.pairs += row.pairs, cell.excluded += row.excluded, cell.empty += row.empty, cell.failed += row.failed;
+    cell.pairs += row.pairs, cell.excluded += row.excluded, cell.misfit += row.misfit;
+    cell.empty += row.empty, cell.failed += row.failed;
     cell.sums.resize(headline.size());
     if (row.pairs == 0) continue;
     ++cell.levels;
     for (std::size_t i = 0; i < headline.size(); ++i) cell.sums[i] += *row.of(headline[i]->name).value;
   }
-  std::vector<std::string> header = {"experiment", "method", "pairs", "excluded", "empty", "failed"};
+  std::vector<std::string> header = {"experiment", "method", "pairs", "excluded", "misfit", "empty", "failed"};
   for (const Measure* measure : headline) header.push_back(measure->title);
   TextTable table(header);
   for (const auto& key : order) {
@@ -53,6 +56,7 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
                                      key.second,
                                      std::to_string(cell.pairs),
                                      std::to_string(cell.excluded),
+                                     std::to_string(cell.misfit),
                                      std::to_string(cell.empty),
                                      std::to_string(cell.failed)};
     for (std::size_t i = 0; i < headline.size(); ++i)
@@ -61,7 +65,8 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
   }
   return table.str() +
          "Means over the levels of an experiment, at each level over its pairs; an empty selection has precision and\n"
-         "recall 0, pairs without correct matches are excluded. success: share of pairs whose refined mean error is at\n"
+         "recall 0, pairs without correct matches are excluded, and so are those whose truth\n"
+         "does not fit the surfaces (misfit). success: share of pairs whose refined mean error is at\n"
          "most 5 pr. summary.csv has every level.\n";
 }
 
@@ -100,8 +105,16 @@ int evaluate_pairs(const Settings& settings, const WorkList& list) {
                     std::to_string(now.failed) + " failed");
   });
   progress.reset();
+  for (std::size_t i = 0; i < std::min(outcome.misfits.size(), kMostWarnings); ++i)
+    say("warning: truth does not fit: " + outcome.misfits[i]);
+  if (outcome.misfits.size() > kMostWarnings)
+    say("warning: the truths of " + std::to_string(outcome.misfits.size() - kMostWarnings) +
+        " more pairs do not fit (column truth of records.csv)");
   if (settings.json) {
-    put("", Json{{"run", settings.study.run}, {"pairs", outcome.units}, {"failed", outcome.failed}});
+    put("", Json{{"run", settings.study.run},
+                 {"pairs", outcome.units},
+                 {"failed", outcome.failed},
+                 {"misfits", outcome.misfits}});
   } else {
     put("", overview_text(outcome.summary));
     const std::string causes = outcome.failed > 0 ? " (records.csv says why)" : "";
@@ -149,7 +162,8 @@ std::string footer() {
   std::string names;
   for (const std::string& name : built_in_experiments()) names += (names.empty() ? "" : ", ") + name;
   return "Experiments of the paper: " + names +
-         ".\nAn experiment of your own is such a file (paper/README.md explains the keys). An interrupted call continues\n"
+         ".\nAn experiment of your own is such a file (paper/README.md explains the keys). An interrupted call "
+         "continues\n"
          "when it is repeated; a pair that fails is recorded with its cause, and the exit status is 4.\n"
          "Examples:\n  corral evaluate noise density --data data -o runs/b3r --jobs 2\n"
          "  corral evaluate my-experiment.toml --data my-scans -o runs/mine --cache ~/.cache/corral\n"

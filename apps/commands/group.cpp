@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // corral group: one grouper on a table of matches.
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/runtime/output.h"
@@ -24,6 +25,7 @@ int group(const Settings& settings) {
   require_in_use(options, {settings.method});
   const ConfiguredGrouper grouper = configure_grouper(settings.method, options);
   if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
+  keep_inputs({settings.matches}, {settings.output});
   if (!settings.output.empty()) check_writable(settings.output);
   const CorrespondenceSet matches = read_matches(settings.matches);
   const std::string refusal = too_large(grouper, matches.size(), static_cast<double>(settings.memory_limit));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
+#include "apps/pair/surface_warnings.h"
 #include "apps/runtime/output.h"
 #include "io/mesh_file.h"
 #include "kernel/bounding_box.h"
@@ -18,7 +19,8 @@ struct MeshInfo {
   std::string path;
   int vertices = 0, faces = 0;
   Topology topology;
-  std::optional<double> resolution;
+  std::optional<PointSpacing> spacing;
+  NormalGuide normals = NormalGuide::Origin;
   Eigen::RowVector3d extent = Eigen::RowVector3d::Zero();
   std::vector<std::string> warnings;
 };
@@ -27,30 +29,34 @@ void add_warnings(MeshInfo& info) {
   const auto warn = [&](int count, const std::string& text) {
     if (count > 0) info.warnings.push_back(std::to_string(count) + " " + text);
   };
-  if (info.faces == 0)
+  if (info.normals == NormalGuide::Origin)
     info.warnings.push_back(
-        "no faces: the normals of a point cloud will point to the origin; 'corral triangulate' gives faces to a range "
-        "scan");
+        "no faces, normals or sensor in the file: the normals of the cloud will point to the origin; 'corral "
+        "triangulate' gives faces to a range scan");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area: left out of components, boundary and edges");
   warn(info.topology.misoriented_faces, "faces wound against the others: normals will have the wrong sign there");
   warn(info.topology.non_manifold_faces, "non-manifold faces");
-  if (!info.resolution)
+  if (!info.spacing)
     info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");
 }
 
 MeshInfo inspect(const std::string& path) {
-  const Mesh mesh = read_mesh(path);
+  const StoredMesh mesh = read_mesh(path);
   MeshInfo info;
   info.path = path;
   info.vertices = static_cast<int>(mesh.vertices.rows());
   info.faces = static_cast<int>(mesh.triangles.rows());
   info.topology = inspect_topology(mesh);
   const BoundingBox box = bounding_box(mesh.vertices);
-  if (box.diagonal() > 0 && std::isfinite(box.diagonal())) info.resolution = point_resolution(mesh.vertices);
+  if (box.diagonal() > 0 && std::isfinite(box.diagonal())) info.spacing = point_spacing(mesh.vertices);
   info.extent = box.high - box.low;
+  info.normals = normal_guide(mesh, {});
+  info.warnings = mesh.notes;
   add_warnings(info);
+  if (info.spacing)
+    for (const std::string& warning : surface_warnings(mesh, *info.spacing)) info.warnings.push_back(warning);
   return info;
 }
 
@@ -66,7 +72,9 @@ Json to_json(const MeshInfo& info) {
           {"degenerate_faces", info.topology.degenerate_faces},
           {"misoriented_faces", info.topology.misoriented_faces},
           {"non_manifold_faces", info.topology.non_manifold_faces},
-          {"resolution", json_or_null(info.resolution)},
+          {"resolution", info.spacing ? Json(info.spacing->resolution) : Json(nullptr)},
+          {"median_spacing", info.spacing ? Json(info.spacing->median) : Json(nullptr)},
+          {"normals", corral::to_text(info.normals)},
           {"mean_edge_length", info.faces > 0 ? Json(info.topology.mean_edge_length) : Json(nullptr)},
           {"extent", {info.extent(0), info.extent(1), info.extent(2)}},
           {"diagonal", info.extent.norm()},
@@ -80,7 +88,10 @@ std::string to_text(const MeshInfo& info) {
                      std::to_string(info.faces) + " in " + std::to_string(info.topology.components) + " components\n" +
                      "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges in " +
                      std::to_string(info.topology.boundary_loops) + " loops\n  resolution  " +
-                     (info.resolution ? to_text(*info.resolution) : "-") + " mesh units per pr\n  mean edge   " +
+                     (info.spacing ? to_text(info.spacing->resolution) + " mesh units per pr (median " +
+                                         to_text(info.spacing->median) + ")"
+                                   : "-") +
+                     "\n  normals     " + to_text(info.normals) + "\n  mean edge   " +
                      (info.faces > 0 ? to_text(info.topology.mean_edge_length) : "-") + "\n  extent      " +
                      to_text(info.extent(0)) + " x " + to_text(info.extent(1)) + " x " + to_text(info.extent(2)) + "\n";
   for (const std::string& warning : info.warnings) text += "  warning     " + warning + "\n";

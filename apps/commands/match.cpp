@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // corral match: from two meshes to a table of matches.
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/match_report.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "io/file.h"
@@ -16,7 +16,7 @@ struct Settings {
   std::string source, target, output;
   MatchSettings match;
   std::vector<std::string> set;
-  bool json = false, verbose = false;
+  bool drop_stray = false, json = false, verbose = false;
 };
 
 int match(Settings settings) {
@@ -25,8 +25,10 @@ int match(Settings settings) {
   settings.match.options = options;
   check_usage(settings.match);
   settings.match.inspect = settings.verbose || settings.json;
+  keep_inputs({settings.source, settings.target}, {settings.output});
   if (!settings.output.empty()) check_writable(settings.output);
-  const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
+  const Mesh source = read_input(settings.source, settings.drop_stray);
+  const Mesh target = read_input(settings.target, settings.drop_stray);
   MatchedPair pair;
   {
     Progress progress(match_stages(settings.match));
@@ -35,7 +37,7 @@ int match(Settings settings) {
   if (settings.verbose)
     say(stage_report(pair.report));
   else
-    for (const std::string& hint : pair.report.hints) say("hint: " + hint);
+    for (const std::string& line : advice(pair.report)) say(line);
   if (!settings.json || !settings.output.empty()) put(settings.output, matches_text(pair.matches));
   if (settings.json) put("", to_json(pair.report));
   return kOk;
@@ -53,6 +55,7 @@ void add_match(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "The stage report as JSON on standard output (the table then needs -o)");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report in words on standard error");
   add_match_options(*command, settings->match);
+  add_drop_stray(*command, settings->drop_stray);
   add_set_option(*command, settings->set);
   command->footer(
       "Examples:\n  corral match model.ply scene.ply -o matches.csv\n"

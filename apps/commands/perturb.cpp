@@ -2,8 +2,8 @@
 // corral perturb: a moved and noisy copy of a mesh, and the motion that made it.
 #include <cmath>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/commands.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
@@ -26,7 +26,8 @@ int perturb(const Settings& settings) {
   if (!(settings.noise_pr >= 0) || !std::isfinite(settings.noise_pr))
     throw UsageError("--noise-pr: expected a length of at least 0");
   check_ply_name(settings.output);
-  const Mesh mesh = read_surface(settings.mesh);
+  keep_inputs({settings.mesh}, {settings.output, settings.truth});
+  const Mesh mesh = read_input(settings.mesh);
   const RigidTransform motion = random_motion(mesh, derive_seed(settings.seed, "motion"));
   const double deviation = settings.noise_pr > 0 ? settings.noise_pr * point_resolution(mesh.vertices) : 0;
   const Mesh copy = add_gaussian_noise(move_mesh(mesh, motion), deviation, derive_seed(settings.seed, "noise"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/report_pair.h"
 #include "apps/runtime/output.h"
@@ -70,6 +71,7 @@ int refine(Settings settings) {
   settings.options.loss = loss_of(settings.loss);
   if (!(settings.options.loss_scale_pr > 0) || !std::isfinite(settings.options.loss_scale_pr))
     throw UsageError("--loss-scale-pr: expected a finite length above 0");
+  keep_inputs({settings.matches, settings.group, settings.truth, settings.start}, {settings.output});
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
   std::optional<RigidTransform> start;

@@ -113,7 +113,8 @@ int report(const Settings& settings) {
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("report", "Figures, tables, pictures and a page of the results of 'corral evaluate'");
+  auto* command =
+      app.add_subcommand("report", "Figures, tables, pictures and a page of the results of 'corral evaluate'");
   auto settings = std::make_shared<Settings>();
   command->add_option("studies", settings->runs, "Folders of 'corral evaluate'")->type_name("STUDY")->required();
   command->add_option("-o,--output", settings->output, "Folder for the report")->type_name("FOLDER")->required();
@@ -124,7 +125,8 @@ void add_report(CLI::App& app, Action& action) {
           "median share of correct matches)")
       ->type_name("NAMES")
       ->delimiter(',');
-  command->add_option("--pairs-in-3d", settings->pairs_in_3d, "Number of pairs whose surfaces and matches are on the page")
+  command
+      ->add_option("--pairs-in-3d", settings->pairs_in_3d, "Number of pairs whose surfaces and matches are on the page")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command->footer(

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <sstream>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/explain.h"
 #include "apps/pair/match_report.h"
-#include "apps/pair/read_surface.h"
 #include "apps/pair/report_pair.h"
+#include "apps/pair/surface_warnings.h"
+#include "apps/pair/truth_fit.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
@@ -28,7 +30,7 @@ struct Settings {
   std::uint64_t memory_limit = 0;
   MatchSettings match;
   std::vector<std::string> set;
-  bool dense = false, explain = false, json = false, verbose = false;
+  bool drop_stray = false, dense = false, explain = false, json = false, verbose = false;
 };
 
 /// "all" or names between commas, each once.
@@ -57,6 +59,7 @@ struct PairRun {
   std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the baseline
   std::vector<bool> labels;                  ///< with a truth: which matches are correct
   std::optional<FrameRepeatability> frames;  ///< with a truth
+  std::optional<TruthFit> fit;               ///< with a truth
   PairCounts counts;                         ///< with --explain
   std::vector<Explanation> explanations;     ///< with --explain: of the pair, then of each grouper
 
@@ -92,6 +95,8 @@ Json to_json(const PairRun& run, const Settings& settings) {
                {"resolution", run.pair.report.resolution},
                {"matches", run.pair.matches.size()},
                {"true_matches", json_or_null(run.true_matches())},
+               {"truth_fit", run.fit ? corral::to_json(*run.fit) : Json(nullptr)},
+               {"warnings", run.pair.report.warnings},
                {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
                {"methods", methods},
                {"bounds", run.truth ? bounds : Json(nullptr)},
@@ -105,6 +110,22 @@ Json to_json(const PairRun& run, const Settings& settings) {
   return json;
 }
 
+/// The files of one grouper in the folder of a run: selection, refinement, pose.
+std::vector<std::string> files_of(const std::string& method) {
+  return {"group_" + method + ".csv", "refine_" + method + ".json", "pose_" + method + ".txt"};
+}
+
+/// All that a run writes to its folder, or removes as that of an earlier call.
+std::vector<std::string> files_of_run(const std::string& folder) {
+  std::vector<std::string> files;
+  if (folder.empty()) return files;
+  for (const char* name : {"matches.csv", "match_report.json", "methods.csv", "run.json", "dense.csv"})
+    files.push_back(folder + "/" + name);
+  for (const Grouper& grouper : groupers())
+    for (const std::string& name : files_of(grouper.name)) files.push_back(folder + "/" + name);
+  return files;
+}
+
 /// Every intermediate file of the run, all or none; files that an earlier call left of other groupers are removed.
 void write_folder(const PairRun& run, const Settings& settings) {
   const std::string folder = settings.output + "/";
@@ -115,27 +136,39 @@ void write_folder(const PairRun& run, const Settings& settings) {
   if (settings.dense) files.push_back({folder + "dense.csv", dense_csv(run.records)});
   for (const MethodRecord& record : run.records) {
     if (!record.failure.empty()) continue;
-    files.push_back({folder + "group_" + record.method + ".csv",
-                     group_text({run.pair.matches.size(), record.found.selected, record.found.scores})});
-    files.push_back({folder + "refine_" + record.method + ".json", json_text(pose_json(record))});
+    const std::vector<std::string> names = files_of(record.method);
+    files.push_back(
+        {folder + names[0], group_text({run.pair.matches.size(), record.found.selected, record.found.scores})});
+    files.push_back({folder + names[1], json_text(pose_json(record))});
     if (record.pose.target_from_source)
-      files.push_back({folder + "pose_" + record.method + ".txt", transform_text(*record.pose.target_from_source)});
+      files.push_back({folder + names[2], transform_text(*record.pose.target_from_source)});
   }
   write_files(files);
-  if (!settings.dense) remove_file(folder + "dense.csv");
-  for (const Grouper& grouper : groupers())
-    for (const std::string& name :
-         {"group_" + grouper.name + ".csv", "refine_" + grouper.name + ".json", "pose_" + grouper.name + ".txt"}) {
-      const auto is_new = [&](const FileContent& file) { return file.path == folder + name; };
-      if (std::none_of(files.begin(), files.end(), is_new)) remove_file(folder + name);
-    }
+  for (const std::string& path : files_of_run(settings.output)) {
+    const auto is_new = [&](const FileContent& file) { return file.path == path; };
+    if (std::none_of(files.begin(), files.end(), is_new)) remove_file(path);
+  }
 }
 
-void explain(PairRun& run, const Mesh& target) {
+/// How far the normals of the surfaces agree under the truth.
+std::optional<double> opposed_share(const Mesh& source, const Mesh& target, const PairRun& run,
+                                    const MatchSettings& settings) {
+  const ParallelFor parallel = workers(settings.threads);
+  const Points source_normals = estimate_normals(source, settings.normal_options(), parallel);
+  const Points target_normals = estimate_normals(target, settings.normal_options(), parallel);
+  return opposed_share({source.vertices, source_normals}, {target.vertices, target_normals}, PointTree(target.vertices),
+                       run.truth->target_from_source, run.pair.report.resolution);
+}
+
+void explain(PairRun& run, const Mesh& source, const Mesh& target, const MatchSettings& settings) {
   const CorrespondenceSet& matches = run.pair.matches;
   const Points seen =
       points_in_overlap(matches.source_points, target, run.truth->target_from_source, matches.resolution);
   run.counts = {matches.size(), static_cast<int>(seen.rows()), *run.true_matches(), run.truth->threshold_pr};
+  if (!run.fit->belongs()) run.counts.misfit = run.fit->text();
+  run.counts.opposed_share = opposed_share(source, target, run, settings);
+  run.counts.source_side = to_text(run.pair.report.source.normals);
+  run.counts.target_side = to_text(run.pair.report.target.normals);
   run.explanations = explain_pair(run.counts, run.bounds[0], run.records);
 }
 
@@ -144,8 +177,10 @@ PairRun evaluate(const Settings& settings) {
   run.methods = method_names(settings.methods);
   const OptionsByName options = parse_set(settings.set);
   for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
+  keep_inputs({settings.source, settings.target, settings.truth}, files_of_run(settings.output));
   if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
-  const Mesh source = read_surface(settings.source), target = read_surface(settings.target);
+  const Mesh source = read_input(settings.source, settings.drop_stray);
+  const Mesh target = read_input(settings.target, settings.drop_stray);
   if (!settings.output.empty()) {  // before the work, not after it
     make_folder(settings.output);
     check_writable(settings.output + "/run.json");
@@ -156,6 +191,9 @@ PairRun evaluate(const Settings& settings) {
     progress.begin("overlap");
     run.truth =
         pair_truth(source, target, run.truth->target_from_source, run.pair.report.resolution, settings.threshold_pr);
+    const MatchReport& report = run.pair.report;
+    run.fit = fit_truth(source, target, run.truth->target_from_source, report.source.spacing, report.target.spacing);
+    if (!run.fit->belongs()) run.pair.report.warnings.push_back("truth does not fit: " + run.fit->text());
     run.labels = label_correct(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
     run.frames = frame_repeatability(run.pair.matches, run.truth->target_from_source, run.labels);
   }
@@ -171,7 +209,7 @@ PairRun evaluate(const Settings& settings) {
     dense.refine(run.records, run.truth);
     dense.refine(run.bounds, run.truth);
   }
-  if (settings.explain) explain(run, target);
+  if (settings.explain) explain(run, source, target, settings.match);
   return run;
 }
 
@@ -211,7 +249,7 @@ int run_pair(Settings settings) {
   if (settings.verbose)
     say(stage_report(run.pair.report));
   else
-    for (const std::string& hint : run.pair.report.hints) say("hint: " + hint);
+    for (const std::string& line : advice(run.pair.report)) say(line);
   if (!settings.output.empty()) write_folder(run, settings);
   if (settings.json)
     put("", to_json(run, settings));
@@ -225,7 +263,8 @@ int run_pair(Settings settings) {
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every grouper");
+  auto* command =
+      app.add_subcommand("run", "Everything on one pair: match, group, score and refine with every grouper");
   auto settings = std::make_shared<Settings>();
   command->add_option("source", settings->source, "Source mesh (a model)")->type_name("FILE")->required();
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
@@ -247,9 +286,11 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");
   add_match_options(*command, settings->match);
+  add_drop_stray(*command, settings->drop_stray);
   add_set_option(*command, settings->set);
   command->footer(
-      "With a truth, the row 'oracle' (all correct matches) shows the result of a perfect grouper, and 'baseline' (all\n"
+      "With a truth, the row 'oracle' (all correct matches) shows the result of a perfect grouper, and 'baseline' "
+      "(all\n"
       "matches) that of no grouper. A pose registers the pair if its mean error over the overlap is at most 5 pr; the\n"
       "outcome is 'found' if both the fit to the selection and the refined pose do, 'saved' if only the refined pose\n"
       "does, 'spoiled' if only the fit does, else 'lost'. ADD is the mean error over the whole source, as a share of\n"

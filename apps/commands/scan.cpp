@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
@@ -53,13 +53,15 @@ void check(const Settings& settings) {
   if (!(settings.options.grazing_deg > 0 && settings.options.grazing_deg <= 90))
     throw UsageError("--grazing-deg: expected an angle above 0 and up to 90");
   check_ply_name(settings.output);
+  keep_inputs({settings.mesh}, {settings.output, settings.truth});
 }
 
 int scan(const Settings& settings) {
   check(settings);
-  Mesh mesh = read_surface(settings.mesh);
+  Mesh mesh = read_input(settings.mesh);
   if (mesh.triangles.rows() == 0)
-    throw IoError(settings.mesh, "", "has no faces, expected a surface ('corral triangulate' gives faces to a single view)");
+    throw IoError(settings.mesh, "",
+                  "has no faces, expected a surface ('corral triangulate' gives faces to a single view)");
   const RangeSensor sensor = sensor_of(settings, mesh);
   const ParallelFor parallel = workers(settings.threads);
   RangeScanOptions options = settings.options;

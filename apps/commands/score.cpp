@@ -2,9 +2,10 @@
 // corral score: precision and recall of a selection, and the error of the pose that follows from it.
 #include <cmath>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/pair/report_pair.h"
+#include "apps/pair/truth_fit.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
 #include "io/group_file.h"
@@ -23,9 +24,13 @@ struct Settings {
 /// The least-squares fit to the selection against the truth; without the meshes, over no points.
 MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group, const Settings& settings) {
   PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
-  if (!settings.source.empty())
-    truth = pair_truth(read_surface(settings.source), read_surface(settings.target), truth.target_from_source,
-                       matches.resolution, settings.threshold_pr);
+  if (!settings.source.empty()) {
+    const Mesh source = read_input(settings.source), target = read_input(settings.target);
+    const TruthFit fit = fit_truth(source, target, truth.target_from_source, point_spacing(source.vertices),
+                                   point_spacing(target.vertices));
+    if (!fit.belongs()) say("warning: truth does not fit: " + fit.text());
+    truth = pair_truth(source, target, truth.target_from_source, matches.resolution, settings.threshold_pr);
+  }
   MethodRecord record;
   record.score =
       score_grouping(label_correct(matches, truth.target_from_source, settings.threshold_pr), group.selected);

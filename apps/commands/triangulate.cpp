@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
@@ -53,9 +53,11 @@ Json to_json(const Mesh& input, const ViewTriangulation& view, double resolution
 }
 
 int triangulate(const Settings& settings) {
-  const ViewOptions options = triangulation_options(settings);
+  ViewOptions options = triangulation_options(settings);
   check_ply_name(settings.output);
-  const Mesh input = read_surface(settings.view);
+  keep_inputs({settings.view}, {settings.output});
+  const Mesh input = read_input(settings.view);
+  if (!settings.sensor.are_given() && input.sensor) options.sensor = *input.sensor;
   const double resolution = point_resolution(input.vertices);
   const ViewTriangulation view = triangulate_view(input.vertices, resolution, options);
   write_mesh(settings.output, {input.vertices, view.triangles});

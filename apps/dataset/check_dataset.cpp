@@ -9,16 +9,16 @@
 #include <tuple>
 
 #include "apps/dataset/pair_sweep.h"
+#include "apps/pair/surface_warnings.h"
+#include "apps/pair/truth_fit.h"
 #include "apps/runtime/text_table.h"
 #include "kernel/bounding_box.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/search/coincidence.h"
 
 namespace corral {
 namespace {
 
 constexpr double kOutOfLine = 8;
-constexpr double kPowers[] = {10, 100, 1000};
 
 /// What is kept of a pair after its surfaces are released.
 struct PairNotes {
@@ -30,69 +30,27 @@ struct PairNotes {
   double resolution = 0;
 };
 
-/// The coincidence of the pair's surfaces under any motion, measured from the coarser side.
-class PairFit {
- public:
-  PairFit(const SweptPair& pair, double resolution)
-      : pair_(pair), resolution_(resolution), ask_source_(pair.source.resolution >= pair.target.resolution) {}
-
-  Coincidence operator()(const RigidTransform& target_from_source) const {
-    const SweptSurface& asked = ask_source_ ? pair_.source : pair_.target;
-    const SweptSurface& other = ask_source_ ? pair_.target : pair_.source;
-    return coincidence(asked.mesh.vertices, other.mesh.vertices, *other.tree,
-                       ask_source_ ? target_from_source : target_from_source.inverse(), resolution_);
-  }
-
- private:
-  const SweptPair& pair_;
-  double resolution_;
-  bool ask_source_;
-};
-
-std::string in_words(const Coincidence& fit) {
-  if (!fit.median_pr) return "nothing within 2 pr";
-  return fixed(100 * fit.share, 1) + " % within 2 pr, median " + fixed(fit.median_pr, 2) + " pr";
-}
-
-/// What is wrong with the truth; empty if it fits.
-std::string judge_truth(const SweptPair& pair, double resolution) {
-  const RigidTransform& truth = *pair.truth;
-  const PairFit fit(pair, resolution);
-  const Coincidence given = fit(truth), inverted = fit(truth.inverse());
-  const std::string both = ": " + in_words(inverted) + "; as given " + in_words(given);
-  if (inverted.is_good() && (!given.is_good() || inverted.share > 1.5 * given.share))
-    return "the inverse of the truth fits better" + both;
-  if (given.is_good()) return "";
-  for (const double power : kPowers)
-    for (const double factor : {power, 1 / power})
-      if (fit({truth.rotation, factor * truth.translation}).is_good())
-        return "wrong units: the truth fits if its translation is multiplied by " + to_text(factor);
-  return "the truth fits neither as given (" + in_words(given) + ") nor inverted (" + in_words(inverted) + ")";
-}
-
-bool is_near(double ratio, double power) { return ratio > 0.75 * power && ratio < 1.34 * power; }
-
-/// Whether two sides have the same size in different units: extents may differ in a cluttered scene, resolutions in a
-/// thinned one, but hardly both by the same power of ten.
-std::string judge_units(double extent_ratio, double resolution_ratio) {
-  for (const double power : kPowers)
-    for (const double factor : {power, 1 / power})
-      if (is_near(resolution_ratio, factor) && extent_ratio > factor / 3 && extent_ratio < factor * 3)
-        return "wrong units: the target's pr is " + fixed(resolution_ratio, 3) + " times the source's, its extent " +
-               fixed(extent_ratio, 3) + " times";
-  return "";
+/// By the spacing that lone vertices do not move.
+TruthFit fit_of(const SweptPair& pair) {
+  const double source = pair.source.spacing.without_strays, target = pair.target.spacing.without_strays;
+  const SweptSurface &coarse = source >= target ? pair.source : pair.target,
+                     &fine = source >= target ? pair.target : pair.source;
+  return fit_truth(coarse.mesh.vertices, fine.mesh.vertices, *fine.tree,
+                   source >= target ? *pair.truth : pair.truth->inverse(), (source + target) / 2);
 }
 
 PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   PairNotes notes;
-  const auto find = [&](const std::string& file, const std::string& problem) {
-    if (!problem.empty()) notes.findings.push_back({swept.pair.name, file, problem});
+  const auto find = [&](const std::string& file, const std::string& problem, bool is_error = true) {
+    if (!problem.empty()) notes.findings.push_back({swept.pair.name, file, problem, is_error});
   };
   find(swept.pair.source, swept.source.problem);
   find(swept.pair.target, swept.target.problem);
   find(swept.pair.truth, swept.truth_problem);
   notes.is_complete = swept.is_complete();
   if (!notes.is_complete) return notes;
+  for (const auto& [file, side] : {std::pair{&swept.pair.source, &swept.source}, {&swept.pair.target, &swept.target}})
+    for (const std::string& warning : surface_warnings(side->mesh, side->spacing)) find(*file, warning);
   const Points &source = swept.source.mesh.vertices, &target = swept.target.mesh.vertices;
   const double source_extent = bounding_box(source).diagonal(), target_extent = bounding_box(target).diagonal();
   notes.source_content = swept.source.content;
@@ -100,15 +58,17 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   notes.source_part = swept.source.resolution / source_extent;
   notes.target_part = swept.target.resolution / target_extent;
   notes.resolution = pair_resolution(dataset, swept.source.resolution, swept.target.resolution);
-  const std::string units =
-      judge_units(target_extent / source_extent, swept.target.resolution / swept.source.resolution);
+  const std::optional<TruthFit> fit = swept.truth ? std::optional(fit_of(swept)) : std::nullopt;
+  std::string units;
+  if (!fit || !fit->belongs())
+    units = unit_warning(size_of(source, swept.source.resolution), size_of(target, swept.target.resolution));
   find("", units);
   const double ratio = notes.resolution / std::min(swept.source.resolution, swept.target.resolution);
   if (units.empty() && !(ratio <= kOutOfLine && ratio >= 1 / kOutOfLine))
     find("", "unusual pr: " + to_text(notes.resolution) + " for the pair, " + to_text(swept.source.resolution) +
                  " on the source, " + to_text(swept.target.resolution) + " on the target");
   if (!swept.truth) return notes;
-  if (units.empty()) find(swept.pair.truth, judge_truth(swept, notes.resolution));
+  if (units.empty()) find(swept.pair.truth, fit->text(), !fit->belongs());
   notes.corners.resize(8, 3);
   for (int i = 0; i < 8; ++i)
     for (int axis = 0; axis < 3; ++axis)

@@ -11,7 +11,6 @@
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
-#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 namespace {
@@ -33,7 +32,8 @@ SweptSurface load(const std::string& path) {
   SweptSurface surface;
   try {
     surface.mesh = read_mesh(path);
-    surface.resolution = point_resolution(surface.mesh.vertices);
+    surface.spacing = point_spacing(surface.mesh.vertices);
+    surface.resolution = surface.spacing.resolution;
     surface.tree.emplace(surface.mesh.vertices);
     const std::hash<std::string_view> hash;
     surface.content = hash(bytes_of(surface.mesh.vertices.data(), surface.mesh.vertices.size())) * 31 +

@@ -11,6 +11,7 @@
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh/mesh.h"
 #include "kernel/surface/search/nearest_points.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral {
 
@@ -20,6 +21,7 @@ struct SweptSurface {
   Mesh mesh;
   std::optional<PointTree> tree;
   double resolution = 0;    ///< its own, mesh units per pr
+  PointSpacing spacing;     ///< what that is the mean of
   std::size_t content = 0;  ///< the same for the same vertices and triangles
 };
 

@@ -17,8 +17,10 @@ namespace fs = std::filesystem;
 SetFolder::SetFolder(const std::string& folder, const std::string& recipe) : folder_(folder) {
   make_folder(folder);
   const std::string note = path(kRecipeName);
-  if (!fs::exists(note) && fs::exists(path("dataset.toml")))
-    throw IoError(folder, "", "holds a data set that this command did not make, expected an empty folder");
+  for (const char* name : {"dataset.toml", "pairs.csv"})
+    if (!fs::exists(note) && fs::exists(path(name)))
+      throw IoError(folder, "",
+                    std::string("holds a ") + name + " that this command did not make, expected an empty folder");
   if (fs::exists(note) && read_file(note) != recipe)
     throw IoError(folder, "",
                   "holds a data set made from other input or options (see " + std::string(kRecipeName) +

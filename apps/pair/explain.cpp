@@ -10,6 +10,7 @@ namespace {
 constexpr int kFewKeypoints = 20;
 constexpr int kLeastRows = 3;  ///< that determine a pose
 constexpr double kLeastPrecision = 0.5;
+constexpr double kOpposed = 0.5;
 
 std::string pr(double value) { return fixed(value, value < 10 ? 2 : 1) + " pr"; }
 
@@ -40,7 +41,9 @@ std::string dense_of(const MethodRecord& record) {
 }
 
 Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
+  if (!counts.misfit.empty()) return Cause::TruthDoesNotFit;
   if (is_registered(oracle.errors)) return Cause::Found;
+  if (counts.opposed_share && *counts.opposed_share > kOpposed) return Cause::NormalsOpposed;
   return counts.keypoints_in_overlap < kFewKeypoints ? Cause::TooFewKeypoints : Cause::TooFewTrueMatches;
 }
 
@@ -72,6 +75,14 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
   if (cause == Cause::Found)
     return "can be registered: " + matches + ", and the refinement of all of them " + end_of(oracle) + "; " +
            keypoints + " (" + limit + ")";
+  if (cause == Cause::TruthDoesNotFit)
+    return "the truth does not fit the surfaces, and all that is judged by it means nothing: " + counts.misfit;
+  if (cause == Cause::NormalsOpposed)
+    return "lost before the grouping: the normals of the source (" + counts.source_side + ") and of the target (" +
+           counts.target_side + ") point to opposite sides on " + fixed(100 * *counts.opposed_share, 0) +
+           " % of the overlap: one of them is flipped; name the place of the sensor with --sensor, or turn the "
+           "faces; " +
+           matches;
   if (cause == Cause::TooFewKeypoints)
     return "lost before the grouping: " + keypoints + ", and of fewer than " + std::to_string(kFewKeypoints) +
            " not even " + std::to_string(kLeastRows) + " correct matches can be expected (at 15 %); " + matches;
@@ -97,8 +108,9 @@ std::string text_of_method(Cause cause, const MethodRecord& record) {
       return "registered by the fit: " + start_of(record) + ", the refinement " + end_of(record);
     case Cause::Saved:
       return "registered by the refinement: " + start_of(record) + ", above " + to_text(kSuccessPr) +
-             " pr, the refinement " +
-             end_of(record);
+             " pr, the refinement " + end_of(record);
+    case Cause::TruthDoesNotFit:
+    case Cause::NormalsOpposed:
     case Cause::TooFewKeypoints:
     case Cause::TooFewTrueMatches:
       return std::string("lost with the pair (") + to_text(cause) + "): " + start_of(record) + ", the refinement " +
@@ -126,6 +138,10 @@ const char* to_text(Cause cause) {
       return "found";
     case Cause::Saved:
       return "saved";
+    case Cause::TruthDoesNotFit:
+      return "truth does not fit";
+    case Cause::NormalsOpposed:
+      return "normals opposed";
     case Cause::TooFewKeypoints:
       return "too few keypoints";
     case Cause::TooFewTrueMatches:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace corral {
 enum class Cause {
   Found,                ///< the fit to the selection registers the pair, and so does the refined pose
   Saved,                ///< the fit does not, but the refined pose does
+  TruthDoesNotFit,      ///< the truth cannot belong to the pair: nothing that is judged by it means anything
+  NormalsOpposed,       ///< lost before the grouping: the normals of one surface point to the other side
   TooFewKeypoints,      ///< lost before the grouping: hardly any keypoint of the source lies in the overlap
   TooFewTrueMatches,    ///< lost before the grouping: not even all correct matches together register the pair
   GrouperMissed,        ///< all correct matches would; the selection holds fewer than 3 of them, or too many others
@@ -22,7 +25,7 @@ enum class Cause {
   NoAnswer,             ///< the grouper failed, or would have needed too much memory
 };
 
-/// "found", "saved", "too few keypoints", "too few true matches", "grouper missed", "degenerate selection", "diverged",
+/// "found", "saved", "truth does not fit", "normals opposed", "too few keypoints", "too few true matches", "grouper missed", "degenerate selection", "diverged",
 /// "not converged", "spoiled", "no answer".
 const char* to_text(Cause cause);
 
@@ -31,6 +34,9 @@ const char* to_text(Cause cause);
 struct PairCounts {
   int keypoints = 0, keypoints_in_overlap = 0, true_matches = 0;
   double threshold_pr = 4;
+  std::string misfit = {};                         ///< why the truth cannot belong to the pair; empty if it may
+  std::optional<double> opposed_share = {};        ///< of the overlap, where the normals point to opposite sides
+  std::string source_side = {}, target_side = {};  ///< what the normals follow, in words
 };
 
 struct Explanation {
@@ -41,7 +47,8 @@ struct Explanation {
 
 /// The pair first, then each grouper. `oracle`: the record of all correct matches. All records are judged, or have a failure.
 ///
-/// If the oracle does not register the pair, the cause is too few keypoints if fewer than 20 lie in the overlap: at 15 %
+/// A truth that does not fit comes first. If the oracle does not register the pair, the cause are normals that are opposed on
+/// most of the overlap; else too few keypoints if fewer than 20 lie in the overlap: at 15 %
 /// correct matches, which partial views reach, fewer than 3 can be expected. If only the grouper fails, the cause is the
 /// grouper if less than half of its selection is correct; else the refinement, if it did not converge.
 std::vector<Explanation> explain_pair(const PairCounts& counts, const MethodRecord& oracle,

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "apps/pair/surface_warnings.h"
 #include "apps/runtime/memory.h"
 #include "apps/runtime/stopwatch.h"
 #include "apps/runtime/workers.h"
@@ -59,16 +60,20 @@ class Pipeline {
     side.report.faces = static_cast<int>(side.mesh.triangles.rows());
     if (settings_.inspect)
       stage("topology of the " + side.name, [&] { side.report.topology = inspect_topology(side.mesh); });
+    side.report.normals = normal_guide(side.mesh, settings_.normal_options());
     stage("normals and resolution of the " + side.name, [&] {
       if (side.cache) {
-        side.report.resolution = point_resolution(side.mesh.vertices);
+        side.report.spacing = point_spacing(side.mesh.vertices);
         return;
       }
       NormalsAndResolution found =
           estimate_normals_and_resolution(side.mesh, settings_.normal_options(), workers(settings_.threads));
-      side.report.resolution = found.resolution;
+      side.report.spacing = std::move(found.spacing);
       side.normals = std::move(found.normals);
     });
+    side.report.resolution = side.report.spacing.resolution;
+    for (const std::string& warning : surface_warnings(side.mesh, side.report.spacing))
+      report_.warnings.push_back(side.name + ": " + warning);
   }
 
   Descriptors describe(Side& side) {
@@ -138,7 +143,25 @@ std::string length_hint(const MatchReport& report, const std::string& algorithm,
   return text;
 }
 
+double resolution_of_pair(const MatchReport& report, const MatchSettings& settings) {
+  std::string strays;
+  for (const auto& [name, side] : {std::pair{"source", &report.source}, {"target", &report.target}}) {
+    const std::string warning = stray_warning(side->spacing, side->points);
+    if (!warning.empty()) strays += std::string("; the ") + name + " has a " + warning;
+  }
+  return pair_resolution(settings.resolution, report.source.resolution, report.target.resolution, strays);
+}
+
+void warn_of_units(const Mesh& source, const Mesh& target, MatchReport& report) {
+  if (!report.source.spacing.strays.empty() || !report.target.spacing.strays.empty()) return;  // extents say nothing
+  const std::string units = unit_warning(size_of(source.vertices, report.source.resolution),
+                                         size_of(target.vertices, report.target.resolution));
+  if (!units.empty()) report.warnings.push_back(units);
+}
+
 void add_hints(const MatchReport& report, const MatchSettings& settings, std::vector<std::string>& hints) {
+  const std::string sides = normal_hint(report.source.normals, report.target.normals);
+  if (!sides.empty()) hints.push_back(sides);
   const auto hint = [&](const SurfaceReport& side, const std::string& name) {
     if (side.descriptors > 0) return;
     const double scale = report.resolution / side.resolution;  // from pr of the pair to the side's own
@@ -178,7 +201,8 @@ MatchedPair match_pair(const Mesh& source, const Mesh& target, const MatchSettin
   Pipeline::Side on_target{target, "target", report.target, hooks.target};
   pipeline.measure(on_source);
   pipeline.measure(on_target);
-  report.resolution = pair_resolution(settings.resolution, report.source.resolution, report.target.resolution);
+  report.resolution = resolution_of_pair(report, settings);
+  warn_of_units(source, target, report);
   report.lengths = lengths_of(settings);
   const Descriptors source_features = pipeline.describe(on_source);
   const Descriptors target_features = pipeline.describe(on_target);

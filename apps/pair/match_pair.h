@@ -16,10 +16,12 @@ namespace corral {
 /// What happened to one of the two surfaces.
 struct SurfaceReport {
   int points = 0, faces = 0;
-  std::optional<Topology> topology;  ///< if inspected
-  double resolution = 0;             ///< its own, mesh units per pr
-  int candidates = 0;                ///< what the keypoints were selected from
-  int keypoints = 0;                 ///< those that the detector found
+  std::optional<Topology> topology;           ///< if inspected
+  double resolution = 0;                      ///< its own, mesh units per pr
+  PointSpacing spacing;                       ///< what that is the mean of
+  NormalGuide normals = NormalGuide::Origin;  ///< what the normals follow
+  int candidates = 0;                         ///< what the keypoints were selected from
+  int keypoints = 0;                          ///< those that the detector found
   int dropped_small_support = 0, dropped_no_frame = 0, dropped_no_histogram = 0;
   int descriptors = 0;  ///< keypoints minus those dropped
 };
@@ -42,7 +44,8 @@ struct MatchReport {
   std::vector<UsedLength> lengths;  ///< every option in pr of the detector and of the descriptor
   int matches = 0;
   std::vector<StageCost> stages;
-  std::vector<std::string> hints;  ///< advice on counts that are zero
+  std::vector<std::string> warnings;  ///< of data that make results wrong
+  std::vector<std::string> hints;     ///< advice on counts that are zero and on normals
 };
 
 struct MatchedPair {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/match_report.h"
 
+#include "apps/pair/surface_warnings.h"
 #include "apps/runtime/text_table.h"
 #include "kernel/number_text.h"
 
@@ -22,6 +23,9 @@ Json to_json(const SurfaceReport& report) {
           {"faces", report.faces},
           {"topology", report.topology ? to_json(*report.topology) : Json(nullptr)},
           {"resolution", report.resolution},
+          {"median_spacing", report.spacing.median},
+          {"strays", report.spacing.strays.size()},
+          {"normals", to_text(report.normals)},
           {"candidates", report.candidates},
           {"keypoints", report.keypoints},
           {"dropped_small_support", report.dropped_small_support},
@@ -44,7 +48,7 @@ std::string oddities(const Topology& topology) {
 
 std::string surface_lines(const char* name, const SurfaceReport& side) {
   std::string text = std::string(name) + ": " + std::to_string(side.points) + " points, " + std::to_string(side.faces) +
-                     " faces" + (side.faces == 0 ? " (a cloud: normals towards the sensor)" : "");
+                     " faces, normals " + to_text(side.normals);
   if (side.topology && side.faces > 0) text += ", " + std::to_string(side.topology->components) + " components";
   if (side.topology) text += oddities(*side.topology);
   return text + ", pr " + to_text(side.resolution) + "\n  " + std::to_string(side.keypoints) + " keypoints of " +
@@ -62,13 +66,16 @@ Json to_json(const MatchReport& report) {
     stages.push_back({{"stage", cost.stage}, {"time_ms", cost.time_ms}, {"peak_memory_mb", cost.peak_memory_mb}});
   Json lengths = Json::object();
   for (const UsedLength& length : report.lengths) lengths[length.name] = length.pr * report.resolution;
-  return {{"resolution", report.resolution},
-          {"lengths", lengths},
-          {"source", to_json(report.source)},
-          {"target", to_json(report.target)},
-          {"matches", report.matches},
-          {"stages", stages},
-          {"hints", report.hints}};
+  return {{"resolution", report.resolution},  {"lengths", lengths},        {"source", to_json(report.source)},
+          {"target", to_json(report.target)}, {"matches", report.matches}, {"stages", stages},
+          {"warnings", report.warnings},      {"hints", report.hints}};
+}
+
+std::vector<std::string> advice(const MatchReport& report) {
+  std::vector<std::string> lines;
+  for (const std::string& warning : report.warnings) lines.push_back("warning: " + warning);
+  for (const std::string& hint : report.hints) lines.push_back("hint: " + hint);
+  return lines;
 }
 
 std::string stage_report(const MatchReport& report) {
@@ -81,7 +88,7 @@ std::string stage_report(const MatchReport& report) {
   for (const StageCost& cost : report.stages)
     table.add({cost.stage, fixed(cost.time_ms, 1), fixed(cost.peak_memory_mb, 1)});
   text += table.str();
-  for (const std::string& hint : report.hints) text += "hint: " + hint + "\n";
+  for (const std::string& line : advice(report)) text += line + "\n";
   text.pop_back();
   return text;
 }

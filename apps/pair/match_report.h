@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/pair/match_pair.h"
 #include "apps/runtime/json.h"
@@ -11,7 +12,10 @@ namespace corral {
 /// `lengths`: the options in pr of the detector and the descriptor, in mesh units.
 Json to_json(const MatchReport& report);
 
-/// The stage report in words, for stderr.
+/// Warnings and hints, a line each, for stderr.
+std::vector<std::string> advice(const MatchReport& report);
+
+/// The stage report in words with the same lines, for stderr.
 std::string stage_report(const MatchReport& report);
 
 }  // namespace corral

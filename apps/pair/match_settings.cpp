@@ -42,7 +42,8 @@ void MatchSettings::validate() const {
   if (resolution != "mean" && resolution != "source" && resolution != "target" && !as_length(resolution))
     throw InvalidInput("match", "--resolution", "'" + resolution + "'",
                        "mean|source|target or a length above zero in mesh units");
-  if (sensor.size() != 3 || !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
+  if ((!sensor.empty() && sensor.size() != 3) ||
+      !std::all_of(sensor.begin(), sensor.end(), [](double x) { return std::isfinite(x); }))
     throw InvalidInput("match", "--sensor", "not a point", "three finite coordinates x,y,z");
   if (threads < 0 || threads > kMostThreads)
     throw InvalidInput("match", "--threads", std::to_string(threads), "0 .. " + std::to_string(kMostThreads));
@@ -59,7 +60,10 @@ void MatchSettings::validate() const {
 }
 
 NormalOptions MatchSettings::normal_options() const {
-  return {20, normals == NormalSide::Mesh, Eigen::Vector3d(sensor.data())};
+  NormalOptions chosen;
+  chosen.side = normals;
+  if (!sensor.empty()) chosen.sensor = Eigen::Vector3d(sensor.data());
+  return chosen;
 }
 
 std::vector<OptionValue> surface_options(const MatchSettings& settings, const std::string& name) {
@@ -80,13 +84,13 @@ Json to_json(const MatchSettings& settings) {
                {"detector", settings.detector},
                {"descriptor", settings.descriptor},
                {"options", Json::object()},
-               {"sensor", settings.sensor}};
+               {"sensor", settings.sensor.empty() ? Json(nullptr) : Json(settings.sensor)}};
   for (const std::string& name : settings.in_use()) json["options"][name] = to_json(surface_options(settings, name));
   for (const OptionValue& field : describe_options(settings)) json[field.name] = typed(field.value);
   return json;
 }
 
-double pair_resolution(const std::string& rule, double source, double target) {
+double pair_resolution(const std::string& rule, double source, double target, const std::string& remark) {
   if (rule == "source") return source;
   if (rule == "target") return target;
   if (rule == "mean") {
@@ -94,7 +98,7 @@ double pair_resolution(const std::string& rule, double source, double target) {
     if (!(ratio <= kLargestRatio))
       throw InvalidInput("match", "--resolution",
                          to_text(source) + " on the source and " + to_text(target) + " on the target",
-                         "both in the same unit, or --resolution with the one to use");
+                         "both in the same unit, or --resolution with the one to use" + remark);
     return (source + target) / 2;
   }
   return as_length(rule).value();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -13,21 +12,14 @@
 
 namespace corral {
 
-/// The side that normals are turned to.
-enum class NormalSide {
-  Mesh,    ///< that of the faces, where there are any, else the sensor
-  Origin,  ///< all towards the sensor
-};
-constexpr std::array<const char*, 2> choice_names(NormalSide) { return {"mesh", "origin"}; }
-
 /// How one pair of surfaces becomes a table of matches. Defaults: the paper's.
 struct MatchSettings {
   std::string resolution = "mean";  ///< pr of the pair: mean|source|target of the two, or a length in mesh units
   std::string detector = "harris", descriptor = "shot";  ///< names in their tables
   OptionsByName options;                                 ///< of those two, beside their defaults
   LocalFrames frames = LocalFrames::Shot;
-  NormalSide normals = NormalSide::Mesh;
-  std::vector<double> sensor = {0, 0, 0};  ///< x, y, z in mesh units
+  NormalSide normals = NormalSide::Auto;
+  std::vector<double> sensor = {};  ///< x, y, z in mesh units; empty: not known
   MatchingOptions matching;
   int threads = 0;       ///< 0: as many as the machine has. Results do not depend on it
   bool inspect = false;  ///< inspect the topology of the meshes too
@@ -37,10 +29,13 @@ struct MatchSettings {
   static void visit_fields(Self& self, Visitor&& visit) {
     visit(OptionField{"frames", "", "shot", "local reference frames of the matches; 3DHV and SI need them"},
           self.frames);
-    visit(OptionField{"normals", "", "origin",
-                      "mesh: to the side of the faces, of a cloud towards the sensor; origin: "
-                      "all towards the sensor"},
-          self.normals);
+    visit(
+        OptionField{
+            "normals", "", "origin",
+            "side that normals point to. auto: towards the sensor if it is given, else as the faces, the "
+            "normals or the sensor in the file say, else towards the origin; mesh: as the faces say, of a cloud "
+            "towards the sensor; file: as the normals in the file say; origin: all towards the sensor"},
+        self.normals);
     MatchingOptions::visit_fields(self.matching, visit);
   }
 
@@ -67,7 +62,8 @@ std::vector<OptionValue> surface_options(const MatchSettings& settings, const st
 /// The length of the detector that decides how many keypoints there are: the first of its options in pr.
 OptionValue keypoint_length(const MatchSettings& settings);
 
-/// pr of a pair by the rule of MatchSettings, from that of each side. Throws InvalidInput if they are in different units.
-double pair_resolution(const std::string& rule, double source, double target);
+/// pr of a pair by the rule of MatchSettings, from that of each side. Throws InvalidInput if they are in different units;
+/// `remark` ends its message.
+double pair_resolution(const std::string& rule, double source, double target, const std::string& remark = "");
 
 }  // namespace corral

@@ -10,9 +10,9 @@
 
 namespace corral {
 
-Mesh read_surface(const std::string& path) {
+StoredMesh read_surface(const std::string& path) {
   const bool is_list = path.size() > 4 && path.compare(path.size() - 4, 4, ".txt") == 0;
-  Mesh mesh = is_list ? parse_xyz(path, read_file(path)) : read_mesh(path);
+  StoredMesh mesh = is_list ? parse_xyz(path, read_file(path)) : read_mesh(path);
   const double diagonal = bounding_box(mesh.vertices).diagonal();
   if (!std::isfinite(diagonal))
     throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");

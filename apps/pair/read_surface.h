@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "kernel/surface/mesh/mesh.h"
+#include "io/mesh_file.h"
 
 namespace corral {
 
 /// A mesh that has a resolution; .txt is a list of points, as .xyz is. Throws IoError as read_mesh does, or if it has fewer
 /// than two distinct vertices.
-Mesh read_surface(const std::string& path);
+StoredMesh read_surface(const std::string& path);
 
 }  // namespace corral

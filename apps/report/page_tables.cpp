@@ -122,7 +122,7 @@ void add_record(Json& columns, Words& words, int run, const StudyRecord& record,
                                    {"selection", &record.selection}})
     columns[name].push_back(words.number(*word));
   columns["repeat"].push_back(record.repeat);
-  columns["excluded"].push_back(is_excluded(role) ? 1 : 0);
+  columns["excluded"].push_back(is_excluded(role) || role == PairRole::Misfit ? 1 : 0);
   for (const Measure* measure : measures_with(kOnPage)) {
     const std::optional<double> number = measure->of(record);
     columns[measure->name].push_back(measure->stored.count && number ? Json(static_cast<int>(*number))

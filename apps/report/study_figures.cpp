@@ -66,7 +66,7 @@ Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Mea
   panel.y_axis = measure.axis_title();
   panel.smaller_is_better = measure.better == Better::Smaller;
   panel.note = pairs_note(info);
-  PanelCount empty{"empty", {}}, pairs{"pairs", {}}, excluded{"excluded", {}};
+  PanelCount empty{"empty", {}}, pairs{"pairs", {}}, excluded{"excluded", {}}, misfit{"misfit", {}};
   const bool with_bounds = measure.has(kWithBounds);
   for (const std::string& method : methods_of(info, with_bounds)) {
     PanelSeries series{method, {}};
@@ -85,8 +85,11 @@ Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Mea
       const SummaryRow& row = *rows.at({level, info.methods[0]});
       pairs.cells.push_back(std::to_string(row.pairs));
       excluded.cells.push_back(std::to_string(row.excluded));
+      misfit.cells.push_back(std::to_string(row.misfit));
     }
   panel.level_counts = {pairs, excluded};
+  if (std::any_of(misfit.cells.begin(), misfit.cells.end(), [](const auto& cell) { return cell != "0"; }))
+    panel.level_counts.push_back(misfit);
   if (!with_bounds) panel.series_counts = {empty};
   return panel;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/truth_fit.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 
@@ -134,12 +135,13 @@ const Measure& measure(const std::string& name) {
 PairRole role_of(const StudyRecord& record, int least_true_matches) {
   if (!record.matches) return PairRole::Failed;
   if (!record.true_matches) return PairRole::Unjudged;
+  if (!record.truth.empty() && !TruthFit::is_belonging(record.truth)) return PairRole::Misfit;
   return *record.true_matches < std::max(1, least_true_matches) ? PairRole::Excluded : PairRole::Judged;
 }
 
 double counted_number(const Measure& measure, const StudyRecord& record, PairRole role) {
   constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-  const bool is_out = role == PairRole::Excluded || role == PairRole::Failed;
+  const bool is_out = role == PairRole::Excluded || role == PairRole::Misfit || role == PairRole::Failed;
   if (is_out && !measure.has(kEveryPair)) return kAbsent;
   if (const auto number = measure.of(record)) return *number;
   if (role != PairRole::Judged || measure.absent == LeftOut) return kAbsent;

@@ -82,6 +82,7 @@ enum class PairRole {
   Judged,    ///< counts
   Unjudged,  ///< excluded because it has no truth: only what needs none counts
   Excluded,  ///< has fewer correct matches than the experiment asks for, or none at all
+  Misfit,    ///< its truth cannot belong to it (TruthFit::belongs)
   Failed,    ///< could not be matched
 };
 

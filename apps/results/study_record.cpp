@@ -32,6 +32,7 @@ void visit_columns(Record& record, Visitor&& visit) {
   visit("repeat", record.repeat);
   visit("value", record.value);
   visit("status", record.status);
+  visit("truth", record.truth);
   for (const Measure& measure : measures()) visit_stored(measure, record, visit);
   visit("selection", record.selection);
 }

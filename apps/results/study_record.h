@@ -24,6 +24,7 @@ struct StudyRecord {
   int repeat = 0;               ///< from 0
   std::optional<double> value;  ///< of the swept attribute
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
+  std::string truth;            ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees

@@ -54,6 +54,7 @@ SummaryRow row_of(const ExperimentInfo& info, const LevelTable& level, const std
   SummaryRow row;
   row.experiment = info.name, row.dataset = info.dataset, row.level = level.level.label, row.method = method;
   row.excluded = level.count(PairRole::Excluded) + level.count(PairRole::Unjudged);
+  row.misfit = level.count(PairRole::Misfit);
   row.failed = level.count(PairRole::Failed);
   const auto found = level.methods.find(method);
   if (found == level.methods.end()) return row;
@@ -73,7 +74,8 @@ SummaryValue SummaryRow::of(const std::string& measure) const {
 }
 
 std::vector<SummaryCell> summary_cells(const SummaryRow& row) {
-  std::vector<SummaryCell> cells = {{"pairs", row.pairs, {}}, {"excluded", row.excluded, {}}, {"empty", row.empty, {}}};
+  std::vector<SummaryCell> cells = {
+      {"pairs", row.pairs, {}}, {"excluded", row.excluded, {}}, {"misfit", row.misfit, {}}, {"empty", row.empty, {}}};
   const std::vector<const Measure*> headline = measures_with(kHeadline);
   for (const Measure* measure : headline) cells.push_back({measure->name, {}, row.of(measure->name).value});
   cells.push_back({"failed", row.failed, {}});

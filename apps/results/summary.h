@@ -25,6 +25,7 @@ struct SummaryRow {
   std::string experiment, dataset, level, method;
   int pairs = 0;     ///< that the means are over
   int excluded = 0;  ///< with too few correct matches, or without a truth
+  int misfit = 0;    ///< whose truth does not fit: left out for all groupers like excluded ones
   int empty = 0;     ///< of `pairs`, those where nothing was selected (in any repeat)
   int failed = 0;    ///< pairs that could not be matched, or on which the grouper gave no answer (in any repeat)
   std::map<std::string, SummaryValue> values;  ///< by the name of the measure; nothing where no row has the method

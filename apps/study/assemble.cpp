@@ -52,6 +52,7 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
   StudyRecord common = common_part(list, sample, result);
   if (!result.failure.empty()) common.status = {MethodState::Failed, result.failure};
   if (result.has_truth) {
+    common.truth = result.truth;
     common.true_matches = result.true_matches[threshold];
     common.frame_share = result.frame_share[threshold];
   }

@@ -8,6 +8,7 @@
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/read_surface.h"
+#include "apps/pair/truth_fit.h"
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
 #include "io/transform_file.h"
@@ -19,7 +20,7 @@ namespace {
 
 /// Part of every key, to be changed with the format of the results; another commit of the program also computes everything
 /// again.
-constexpr char kFormat[] = "corral study 2";
+constexpr char kFormat[] = "corral study 3";
 
 std::string key_of(const std::vector<std::string>& parts) {
   static const std::string program = "\n" + build_info().version + " " + build_info().commit;
@@ -79,6 +80,8 @@ class PairStudy {
     if (unit_.pair.truth.empty()) return;
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
+    fit_ = fit_truth(source_, target_, truth_->target_from_source, point_spacing(source_.vertices),
+                     point_spacing(target_.vertices));
     for (const double threshold : unit_.thresholds_pr)
       labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
   }
@@ -94,6 +97,7 @@ class PairStudy {
     result.source_keypoints = stored_.source_keypoints;
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
+    if (fit_) result.truth = fit_->name(), result.truth_text = fit_->text();
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
     if (unit_.dense) {
       DenseRefinement dense(source_, target_, matches_.resolution);
@@ -178,6 +182,7 @@ class PairStudy {
   const StoredMatches stored_;
   const CorrespondenceSet& matches_;
   std::optional<PairTruth> truth_;
+  std::optional<TruthFit> fit_;
   std::vector<std::vector<bool>> labels_;  ///< at each threshold
   std::vector<MethodRecord> records_;      ///< one for each task
 };

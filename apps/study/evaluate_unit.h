@@ -29,6 +29,7 @@ struct UnitResult {
   int source_points = 0, source_keypoints = 0;  ///< vertices of the source, and those that were keypoints
   int matches = 0;
   bool has_truth = false;
+  std::string truth, truth_text;                   ///< TruthFit::name and text; empty without a truth
   std::vector<int> true_matches;                   ///< at each threshold
   std::vector<std::optional<double>> frame_share;  ///< at each threshold
   std::vector<TaskResult> tasks;                   ///< one each

@@ -9,8 +9,10 @@
 #include <chrono>
 #include <filesystem>
 #include <mutex>
+#include <set>
 #include <thread>
 
+#include "apps/pair/truth_fit.h"
 #include "apps/runtime/workers.h"
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
@@ -57,6 +59,20 @@ bool fits(const UnitResult& result, const WorkUnit& unit) {
 }
 
 /// Evaluates the units of a study and writes their files.
+/// Each pair once, in the order of the units.
+std::vector<std::string> misfits_of(const WorkList& list, const std::vector<UnitResult>& results) {
+  std::vector<std::string> misfits;
+  std::set<std::string> named;
+  for (std::size_t unit = 0; unit < results.size(); ++unit) {
+    const std::string& verdict = results[unit].truth;
+    if (verdict.empty() || TruthFit::is_belonging(verdict)) continue;
+    const std::string& truth = list.units[unit].pair.truth;
+    if (named.insert(truth + " " + list.units[unit].pair.name).second)
+      misfits.push_back("pair " + list.units[unit].pair.name + ", " + truth + ": " + results[unit].truth_text);
+  }
+  return misfits;
+}
+
 class Runner {
  public:
   Runner(const WorkList& list, const InputHashes& inputs, const StudySettings& settings,
@@ -163,7 +179,7 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
   const StudyOutcome outcome{results.size(),
                              static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),
-                             summarize(experiment_tables(run))};
+                             misfits_of(list, results), summarize(experiment_tables(run))};
   write_files({{(folder / "records.csv").string(), records_text(run.records)},
                {(folder / "summary.csv").string(), summary_text(outcome.summary)},
                {manifest, manifest_text(list, inputs, results, settings.command_line)}});

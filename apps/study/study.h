@@ -24,6 +24,7 @@ struct StudyProgress {
 
 struct StudyOutcome {
   std::size_t units = 0, failed = 0;  ///< units; those where the pair, or a grouper on it, failed
+  std::vector<std::string> misfits;   ///< the pairs whose truth does not fit, each with what is wrong
   std::vector<SummaryRow> summary;
 };
 

@@ -68,6 +68,8 @@ UnitResult unit_of(const Json& json) {
   result.source_keypoints = count_of(json.at("source_keypoints"));
   result.matches = count_of(json.at("matches"));
   result.has_truth = json.at("has_truth");
+  result.truth = json.at("truth");
+  result.truth_text = json.at("truth_text");
   result.true_matches = counts_of(json.at("true_matches"));
   for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
   for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
@@ -89,6 +91,8 @@ std::string unit_result_text(const UnitResult& result) {
               {"source_keypoints", result.source_keypoints},
               {"matches", result.matches},
               {"has_truth", result.has_truth},
+              {"truth", result.truth},
+              {"truth_text", result.truth_text},
               {"true_matches", result.true_matches},
               {"frame_share", frames},
               {"tasks", tasks},

@@ -17,22 +17,55 @@ PointGrid grid_for(const Points& points, int k) {
   return PointGrid::with_occupancy(points, 0.65 * k);
 }
 
+/// Vectors to the side that normals belong to, by row; no rows: towards the sensor.
+Points sides_of(const Mesh& mesh, NormalGuide guide) {
+  if (guide == NormalGuide::Faces) return area_weighted_normals(mesh);
+  return guide == NormalGuide::Normals ? mesh.normals : Points();
+}
+
+Eigen::RowVector3d sensor_of(const Mesh& mesh, NormalGuide guide, const NormalOptions& options) {
+  if (guide == NormalGuide::OwnSensor) return mesh.sensor->transpose();
+  return options.sensor.value_or(Eigen::Vector3d::Zero()).transpose();
+}
+
 /// By row, each oriented.
 Points turned(const NearestPlanes& fits, const Mesh& mesh, const PointGrid& grid, const NormalOptions& options) {
-  const Points sides = options.side_of_faces ? area_weighted_normals(mesh) : Points();
+  const NormalGuide guide = normal_guide(mesh, options);
+  const Points sides = sides_of(mesh, guide);
+  const Eigen::RowVector3d sensor = sensor_of(mesh, guide, options);
   Points normals(mesh.vertices.rows(), 3);
   for (int slot = 0; slot < grid.size(); ++slot) {
     const int row = grid.row(slot);
     const auto i = static_cast<std::size_t>(slot);
     const Eigen::RowVector3d normal(fits.nx[i], fits.ny[i], fits.nz[i]);
-    Eigen::RowVector3d outside = options.sensor.transpose() - mesh.vertices.row(row);
-    if (options.side_of_faces && !sides.row(row).isZero(0)) outside = sides.row(row);
+    Eigen::RowVector3d outside = sensor - mesh.vertices.row(row);
+    if (sides.rows() > 0 && !sides.row(row).isZero(0)) outside = sides.row(row);
     normals.row(row) = normal.dot(outside) < 0 ? Eigen::RowVector3d(-normal) : normal;
   }
   return normals;
 }
 
 }  // namespace
+
+NormalGuide normal_guide(const Mesh& mesh, const NormalOptions& options) {
+  const bool has_faces = mesh.triangles.rows() > 0, has_normals = mesh.normals.rows() > 0;
+  const NormalGuide sensor = options.sensor ? NormalGuide::NamedSensor : NormalGuide::Origin;
+  switch (options.side) {
+    case NormalSide::Mesh:
+      return has_faces ? NormalGuide::Faces : sensor;
+    case NormalSide::Origin:
+      return sensor;
+    case NormalSide::File:
+      if (!has_normals) throw InvalidInput("normals", "file", "a mesh without normals", "one whose file has them");
+      return NormalGuide::Normals;
+    case NormalSide::Auto:
+      break;
+  }
+  if (options.sensor) return NormalGuide::NamedSensor;
+  if (has_faces) return NormalGuide::Faces;
+  if (has_normals) return NormalGuide::Normals;
+  return mesh.sensor ? NormalGuide::OwnSensor : NormalGuide::Origin;
+}
 
 Points estimate_normals(const Mesh& mesh, const NormalOptions& options, const ParallelFor& parallel) {
   const PointGrid grid = grid_for(mesh.vertices, options.neighbors);
@@ -44,8 +77,8 @@ NormalsAndResolution estimate_normals_and_resolution(const Mesh& mesh, const Nor
                                                      const ParallelFor& parallel) {
   const PointGrid grid = grid_for(mesh.vertices, options.neighbors);
   NearestPlanes fits = fit_nearest_planes(mesh.vertices, grid, options.neighbors, parallel);
-  const double resolution = mean_nearest(grid, mesh.vertices, std::move(fits.squares));
-  return {turned(fits, mesh, grid, options), resolution};
+  PointSpacing spacing = mean_nearest(grid, mesh.vertices, std::move(fits.squares));
+  return {turned(fits, mesh, grid, options), std::move(spacing)};
 }
 
 }  // namespace corral

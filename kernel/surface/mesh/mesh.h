@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 
 #include "kernel/types.h"
@@ -13,9 +14,10 @@ using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3>;
 
 /// A triangle mesh, or a point cloud if it has no triangles. Plain arrays: code that needs half-edges or a tree builds them.
 struct Mesh {
-  Points vertices;      ///< V x 3, mesh units
-  Triangles triangles;  ///< F x 3, zero-based rows of `vertices`; F = 0 for a cloud
-  Points normals = {};  ///< V x 3, of any length, zero where unknown; or no rows: none are known
+  Points vertices;                             ///< V x 3, mesh units
+  Triangles triangles;                         ///< F x 3, zero-based rows of `vertices`; F = 0 for a cloud
+  Points normals = {};                         ///< V x 3, of any length, zero where unknown; or no rows: none are known
+  std::optional<Eigen::Vector3d> sensor = {};  ///< from where the surface was seen, mesh units, if that is known
 
   /// Throws InvalidInput if a coordinate is not finite, a triangle names a vertex that does not exist, or there are normals
   /// but not one for each vertex.

@@ -47,7 +47,7 @@ Mesh add_gaussian_noise(const Mesh& mesh, double deviation, std::uint64_t seed) 
   if (!(deviation >= 0) || !std::isfinite(deviation))
     throw InvalidInput("add_gaussian_noise", "deviation", deviation, "a finite length of at least 0");
   RandomStream random(seed);
-  Mesh noisy = mesh;
+  Mesh noisy{mesh.vertices, mesh.triangles};  // its normals would be those of the clean one
   for (Eigen::Index row = 0; row < noisy.vertices.rows(); ++row)
     for (int axis = 0; axis < 3; ++axis) noisy.vertices(row, axis) += deviation * random.normal();
   return noisy;
@@ -78,7 +78,10 @@ Mesh thin_mesh(const Mesh& mesh, double share, std::uint64_t seed) {
 }
 
 Mesh move_mesh(const Mesh& mesh, const RigidTransform& target_from_source) {
-  return {target_from_source.apply(mesh.vertices), mesh.triangles};
+  Mesh moved{target_from_source.apply(mesh.vertices), mesh.triangles,
+             mesh.normals * target_from_source.rotation.transpose()};
+  if (mesh.sensor) moved.sensor = target_from_source * *mesh.sensor;
+  return moved;
 }
 
 RigidTransform random_motion(const Mesh& mesh, std::uint64_t seed) {

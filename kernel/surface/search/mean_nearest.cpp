@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "kernel/error.h"
 #include "kernel/surface/search/neighborhood.h"
@@ -31,9 +32,48 @@ double nearest_by_tree(const PointIndex& index, const Eigen::Vector3d& point, in
   }
 }
 
+/// Lone vertices are further than this from all others, in medians of all distances.
+constexpr double kStrayMedians = 20;
+
+double median_of_distinct(const PointGrid& grid, const AlignedColumn& squares) {
+  std::vector<double> distinct;
+  distinct.reserve(static_cast<std::size_t>(grid.size()));
+  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
+    if (!is_duplicate(grid, slot)) distinct.push_back(squares[slot]);
+  const auto middle = distinct.begin() + static_cast<std::ptrdiff_t>(distinct.size() / 2);
+  std::nth_element(distinct.begin(), middle, distinct.end());
+  return std::sqrt(*middle);
+}
+
+/// Fills in which vertices are strays, and the spacing of the others.
+void tell_strays(const PointGrid& grid, const AlignedColumn& squares, double largest, PointSpacing& spacing) {
+  spacing.without_strays = spacing.resolution;
+  const double limit = kStrayMedians * spacing.median;
+  if (!(largest > limit * limit)) return;
+  double sum = 0;  // in the order of the slots, which does not depend on the threads
+  int others = 0;
+  bool is_stray = false;
+  for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot) {
+    const bool repeats = is_duplicate(grid, slot);
+    if (!repeats) is_stray = squares[slot] > limit * limit;
+    if (is_stray) spacing.strays.push_back(grid.row(static_cast<int>(slot)));
+    if (is_stray || repeats) continue;
+    sum += std::sqrt(squares[slot]);
+    ++others;
+  }
+  std::sort(spacing.strays.begin(), spacing.strays.end());
+  spacing.without_strays = sum / others;
+  spacing.stray_distance = std::sqrt(largest);
+}
+
 }  // namespace
 
-double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares) {
+bool PointSpacing::is_moved_by_strays(int vertices) const {
+  constexpr double kFew = 0.01, kMoved = 1.05;
+  return static_cast<double>(strays.size()) <= kFew * vertices && resolution > kMoved * without_strays;
+}
+
+PointSpacing mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares) {
   std::optional<PointIndex> index;
   double largest = 0;
   int distinct = 0;
@@ -52,14 +92,19 @@ double mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn s
   if (distinct < 2)
     throw InvalidInput("point_resolution", "number of distinct vertices", std::to_string(distinct),
                        "at least 2 (resolution would be zero)");
-  if (!(largest < kInfinity)) return kInfinity;
+  PointSpacing spacing;
+  spacing.resolution = spacing.median = spacing.without_strays = kInfinity;
+  if (!(largest < kInfinity)) return spacing;
   // In whole numbers of a unit below the last place of the longest, which add up to the same in whatever order.
   __extension__ typedef __int128 Wide;
   const double units = std::ldexp(1, 61 - std::ilogb(std::sqrt(largest)));  // in 1
   Wide total = 0;
   for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot)
     total += static_cast<std::int64_t>(std::sqrt(squares[slot]) * units);
-  return static_cast<double>(total) / units / distinct;
+  spacing.resolution = static_cast<double>(total) / units / distinct;
+  spacing.median = median_of_distinct(grid, squares);
+  tell_strays(grid, squares, largest, spacing);
+  return spacing;
 }
 
 }  // namespace corral

@@ -65,10 +65,14 @@ namespace corral {
 
 HWY_EXPORT(nearest_squares);
 
-double point_resolution(const Points& vertices, const ParallelFor& parallel) {
+PointSpacing point_spacing(const Points& vertices, const ParallelFor& parallel) {
   constexpr double kOccupancy = 5;  // the nearest vertex is then nearly always in the next cells around
   const PointGrid grid = PointGrid::with_occupancy(vertices, kOccupancy);
   return mean_nearest(grid, vertices, HWY_DYNAMIC_DISPATCH(nearest_squares)(grid, parallel));
+}
+
+double point_resolution(const Points& vertices, const ParallelFor& parallel) {
+  return point_spacing(vertices, parallel).resolution;
 }
 
 }  // namespace corral

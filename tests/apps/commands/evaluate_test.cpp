@@ -194,6 +194,22 @@ TEST_F(Evaluate, APairWithoutTruthIsGroupedButNotScored) {
   EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "1");
 }
 
+TEST_F(Evaluate, APairWhoseTruthDoesNotFitIsNamedAndCounted) {
+  const RigidTransform truth = read_transform(place_ / "data/b3r/m1-0.05.txt");
+  place_.put("data/b3r/inverse.txt", transform_text(truth.inverse()));
+  place_.put("data/b3r/pairs.csv", replaced(place_.text("data/b3r/pairs.csv"), "m1-0.05.txt", "inverse.txt"));
+  const Outcome outcome = evaluate("-o run");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: truth does not fit: pair m1-0.05, "));
+  EXPECT_THAT(outcome.err, HasSubstr("the truth fits inverted: "));
+  for (const StudyRecord& record : read_study(place_ / "run").records)
+    EXPECT_EQ(record.truth, record.pair == "m1-0.05" ? "inverted" : "fits");
+  const CsvTable summary = read_csv(place_ / "run/summary.csv");
+  EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("misfit"))], "1");
+  EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "0");
+  EXPECT_EQ(evaluate("-o run --json").json()["misfits"].size(), 1U) << "when it is repeated too";
+}
+
 TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {
   ASSERT_EQ(evaluate("-o run").status, 0);
   place_.put("small.toml", std::string(kSmallExperiment) + "\n[options.gc]\ntolerance_pr = 2\n");

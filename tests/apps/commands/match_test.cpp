@@ -36,7 +36,7 @@ TEST(MatchOptions, DefaultsAreWhatTheHelpSays) {
   const std::string expected = place.text("table.csv");
   table_of(place,
            "--resolution mean --detector harris --set harris.radius_pr=3 --descriptor shot --set shot.radius_pr=15 "
-           "--frames shot --normals mesh --sensor 0,0,0 --set shot.form=additive --matcher exact --threads 0");
+           "--frames shot --normals auto --set shot.form=additive --matcher exact --threads 0");
   EXPECT_EQ(place.text("table.csv"), expected);
 }
 
@@ -88,13 +88,18 @@ TEST(MatchOptions, SensorIsThreeNumbersOfAnySign) {
   }
 }
 
-TEST(MatchOptions, NormalsOfFacesDoNotAskForTheSensor) {
+TEST(MatchOptions, NormalsOfFacesDoNotAskForTheSensorUnlessItIsNamed) {
   const Workplace place;
   place.put_pair();
-  table_of(place, "--sensor 100,200,-300");
-  const std::string moved = place.text("table.csv");
   table_of(place, "");
-  EXPECT_EQ(place.text("table.csv"), moved);
+  const std::string by_faces = place.text("table.csv");
+  table_of(place, "--normals mesh --sensor 100,200,-300");
+  EXPECT_EQ(place.text("table.csv"), by_faces);
+  table_of(place, "--sensor 100,200,-300");
+  const std::string by_sensor = place.text("table.csv");
+  EXPECT_NE(by_sensor, by_faces);
+  table_of(place, "--normals origin --sensor 100,200,-300");
+  EXPECT_EQ(place.text("table.csv"), by_sensor);
 }
 
 TEST(MatchOptions, MutualMatchesArePartOfAll) {
@@ -148,7 +153,7 @@ TEST(MatchOptions, BadValuesAreRefusedInOneSentence) {
       {"--detector sift", "expected harris|harris-mesh|"},
       {"--descriptor sift", "expected shot|fpfh"},
       {"--detector Harris", "--detector is 'Harris'"},
-      {"--normals outward", "expected mesh|origin"},
+      {"--normals outward", "expected auto|mesh|file|origin"},
       {"--frames some", "expected shot|none"},
       {"--set shot.form=quadrilinear", "expected additive|product|pcl-bug"},
       {"--matcher kdtree", "expected exact|flann"},
@@ -223,7 +228,8 @@ TEST(MatchReport, TheStagesAreATableInWordsAndAListInJson) {
   for (const char* side : {"source", "target"}) {
     EXPECT_THAT(testing::keys_of(report[side]),
                 ElementsAre("candidates", "descriptors", "dropped_no_frame", "dropped_no_histogram",
-                            "dropped_small_support", "faces", "keypoints", "points", "resolution", "topology"));
+                            "dropped_small_support", "faces", "keypoints", "median_spacing", "normals", "points", "resolution",
+                            "strays", "topology"));
     EXPECT_EQ(report[side]["topology"]["components"], 1);
     EXPECT_EQ(report[side]["topology"]["isolated"], 0);
     EXPECT_EQ(report[side]["descriptors"].get<int>() + report[side]["dropped_small_support"].get<int>() +
@@ -270,7 +276,7 @@ TEST(RunOptions, VerboseHasTheStages) {
   const Outcome outcome = place.corral("run model.ply copy.ply --truth truth.txt --methods ss -v");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err,
-              AllOf(StartsWith("source: 2562 points, 5120 faces, 1 components, pr "), HasSubstr("\nstage "),
+              AllOf(StartsWith("source: 2562 points, 5120 faces, normals by the faces, 1 components, pr "), HasSubstr("\nstage "),
                     HasSubstr("\nmatching "), HasSubstr("\ndescriptors of the target ")));
   EXPECT_THAT(outcome.out, HasSubstr("% of the correct matches agree within 10 degrees"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("hint: ")));

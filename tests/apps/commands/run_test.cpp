@@ -156,15 +156,15 @@ TEST(Run, ExplainsWhereThePairWasWonOrLost) {
   EXPECT_THAT(refused.err, HasSubstr("--explain: needs --truth"));
 }
 
-// A truth that holds nowhere: the pair is lost before the grouping, whatever the methods do.
-TEST(Run, ExplainsThatNothingOverlaps) {
+// A truth that holds nowhere is the cause of everything, whatever the methods do.
+TEST(Run, ExplainsThatATruthFitsNowhere) {
   const Workplace place;
   place.put_pair();
   place.put("far.txt", "1 0 0 1000\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   const auto json = place.corral("run model.ply copy.ply --truth far.txt --methods gc --explain --json").json();
-  EXPECT_EQ(json["explanation"]["cause"], "too few keypoints");
+  EXPECT_EQ(json["explanation"]["cause"], "truth does not fit");
   EXPECT_EQ(json["explanation"]["keypoints_in_overlap"], 0);
-  EXPECT_EQ(json["explanation"]["methods"][0]["cause"], "too few keypoints");
+  EXPECT_EQ(json["explanation"]["methods"][0]["cause"], "truth does not fit");
   EXPECT_EQ(json["methods"][0]["outcome"], "lost");
 }
 

@@ -87,11 +87,11 @@ TEST(Triangulate, TheSideOfTheSensorIsThatOfTheNormals) {
 TEST(Triangulate, SaysThatItReplacesFaces) {
   const Workplace place;
   write_mesh(place / "grid.ply", testing::grid(6, 4));
-  const Outcome outcome = place.corral("triangulate grid.ply --direction 0,0,-1 -o grid.ply --json");
+  const Outcome outcome = place.corral("triangulate grid.ply --direction 0,0,-1 -o faced.ply --json");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, HasSubstr("note: 30 faces of grid.ply are replaced\n"));
   EXPECT_EQ(outcome.json()["replaced_faces"], 30);
-  EXPECT_EQ(read_mesh(place / "grid.ply").triangles.rows(), 30);
+  EXPECT_EQ(read_mesh(place / "faced.ply").triangles.rows(), 30);
 }
 
 TEST(Triangulate, HintsAtASensorThatWasElsewhere) {

@@ -6,6 +6,7 @@
 #include "io/dataset_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
+#include "kernel/surface/search/resolution.h"
 #include "tests/support/program.h"
 
 namespace corral {
@@ -91,7 +92,7 @@ TEST_F(CheckDataset, NamesATruthThatIsMissingOrNotRigid) {
 
 TEST_F(CheckDataset, NamesATruthThatFitsBetterInverted) {
   place_.put("t1.xf", transform_text(truth(1).inverse()));
-  expect_finding("x1/t1.xf: ", "the inverse of the truth fits better: 100.0 % within 2 pr");
+  expect_finding("x1/t1.xf: ", "the truth fits inverted: 100 % within 2 pr");
 }
 
 TEST_F(CheckDataset, NamesATruthThatFitsNeitherWay) {
@@ -121,15 +122,38 @@ TEST_F(CheckDataset, NamesWrongUnits) {
 }
 
 TEST_F(CheckDataset, PrOutOfLineIsNamed) {
-  // A far vertex makes a mesh ten times larger; its truth still fits.
+  // Two far vertices make a mesh ten times larger; its truth still fits.
   Mesh far = mesh("b3.ply");
-  far.vertices.conservativeResize(far.vertices.rows() + 1, 3);
-  far.vertices.bottomRows(1) << 90, 90, 90;
+  far.vertices.conservativeResize(far.vertices.rows() + 2, 3);
+  far.vertices.bottomRows(2) << 90, 90, 90, 90, 90, 90.1;
   write_mesh(place_ / "b3.ply", far);
   expect_finding("x3/b3.ply: ", "unusual pr: its share of the diagonal is 0.0");
   write_mesh(place_ / "b3.ply", move_mesh(mesh("a3.ply"), truth(3)));
   set_.resolution = "5";
   EXPECT_THAT(check().out, HasSubstr("x1: unusual pr: 5 for the pair"));
+}
+
+TEST_F(CheckDataset, NamesAStrayVertex) {
+  Mesh far = mesh("b3.ply");
+  far.vertices.conservativeResize(far.vertices.rows() + 1, 3);
+  far.vertices.bottomRows(1) << 2, 2, 900;
+  write_mesh(place_ / "b3.ply", far);
+  EXPECT_THAT(check().out, HasSubstr("x3/b3.ply: stray point: vertex " + std::to_string(far.vertices.rows() - 1)));
+}
+
+// Real scanners and printed parts: no problem, but worth knowing.
+TEST_F(CheckDataset, ATruthThatFitsLooselyIsANote) {
+  Mesh thicker = mesh("b2.ply");
+  const Eigen::RowVector3d middle = thicker.vertices.colwise().mean();
+  const double pr = point_resolution(thicker.vertices);
+  for (int row = 0; row < thicker.vertices.rows(); ++row)
+    thicker.vertices.row(row) += 1.4 * pr * (thicker.vertices.row(row) - middle).normalized();
+  write_mesh(place_ / "b2.ply", thicker);
+  const Outcome outcome = check();
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, StartsWith("x2/t2.xf: note: the truth fits loosely: "));
+  EXPECT_EQ(outcome.err, ".: 4 pairs, no problems, 1 note\n");
+  EXPECT_FALSE(check("--json").json()["findings"][0]["is_error"]);
 }
 
 TEST_F(CheckDataset, DuplicatePairsAreNamedWhateverTheirFilesAreCalled) {

@@ -13,6 +13,20 @@ using ::testing::Not;
 
 const PairCounts kCounts{500, 300, 40, 4};
 
+PairCounts with_misfit() {
+  PairCounts counts = kCounts;
+  counts.misfit = "the truth fits inverted";
+  return counts;
+}
+
+PairCounts with_opposed_normals(double share) {
+  PairCounts counts{500, 300, 0, 4};
+  counts.opposed_share = share;
+  counts.source_side = "by the faces";
+  counts.target_side = "towards the origin";
+  return counts;
+}
+
 /// A judged record: mean errors of fit and refined pose in pr, below 0 where there is no such pose.
 MethodRecord record_of(double fit, double refined, int selected = 30, int correct = 24) {
   MethodRecord record;
@@ -180,6 +194,27 @@ TEST(ExplainMethod, EveryCauseHasAName) {
   EXPECT_STREQ(to_text(Cause::TooFewTrueMatches), "too few true matches");
   EXPECT_STREQ(to_text(Cause::DegenerateSelection), "degenerate selection");
   EXPECT_STREQ(to_text(Cause::NoAnswer), "no answer");
+}
+
+// Even where the oracle is right by it: all matches would be right by their own pose.
+TEST(Explain, ATruthThatDoesNotFitComesFirst) {
+  for (const MethodRecord& oracle : {kGoodOracle, record_of(-1, -1, 0, 0)}) {
+    const auto explanations = explain_pair(with_misfit(), oracle, {record_of(20, 20, 30, 0)});
+    EXPECT_EQ(explanations[0].cause, Cause::TruthDoesNotFit);
+    EXPECT_THAT(explanations[0].text, HasSubstr("the truth fits inverted"));
+    EXPECT_EQ(explanations[1].cause, Cause::TruthDoesNotFit);
+  }
+  EXPECT_STREQ(to_text(Cause::TruthDoesNotFit), "truth does not fit");
+}
+
+TEST(Explain, NamesNormalsOnOppositeSides) {
+  const MethodRecord nothing = record_of(-1, -1, 0, 0);
+  const auto explanations = explain_pair(with_opposed_normals(0.98), nothing, {nothing});
+  EXPECT_EQ(explanations[0].cause, Cause::NormalsOpposed);
+  EXPECT_THAT(explanations[0].text, AllOf(HasSubstr("source (by the faces)"), HasSubstr("target (towards the origin)"),
+                                          HasSubstr("98 % of the overlap"), HasSubstr("--sensor")));
+  EXPECT_EQ(explain_pair(with_opposed_normals(0.2), nothing, {})[0].cause, Cause::TooFewTrueMatches);
+  EXPECT_EQ(explain_pair(with_opposed_normals(0.98), kGoodOracle, {})[0].cause, Cause::Found) << "it does not matter";
 }
 
 }  // namespace

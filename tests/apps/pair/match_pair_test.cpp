@@ -132,7 +132,7 @@ TEST(MatchPair, SettingsAreChecked) {
   EXPECT_THAT(refused([](MatchSettings& s) { s.detector = "sift"; }), HasSubstr("harris|harris-mesh|"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.descriptor = "SHOT"; }), HasSubstr("shot"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.sensor = {1, 2}; }), HasSubstr("three finite coordinates"));
-  EXPECT_THAT(refused([](MatchSettings& s) { s.sensor[1] = HUGE_VAL; }), HasSubstr("three finite coordinates"));
+  EXPECT_THAT(refused([](MatchSettings& s) { s.sensor = {0, HUGE_VAL, 0}; }), HasSubstr("three finite coordinates"));
   EXPECT_THAT(refused([](MatchSettings& s) { s.threads = -1; }), HasSubstr("--threads is -1"));
   const auto set = [&](const std::string& name, const std::string& option, const std::string& value) {
     return refused([&](MatchSettings& s) { s.options[name][option] = value; });

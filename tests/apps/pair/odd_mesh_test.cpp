@@ -11,7 +11,7 @@
 namespace corral {
 namespace {
 
-using ::testing::ElementsAre;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 using testing::points_of;
@@ -54,7 +54,9 @@ MatchReport match_with_sphere(const Mesh& mesh, bool has_outliers = false) {
       EXPECT_EQ(pair.report.source.points, mesh.vertices.rows());
       EXPECT_EQ(pair.report.source.faces, mesh.triangles.rows());
       EXPECT_TRUE(pair.report.source.topology.has_value() && pair.report.target.topology.has_value());
-      EXPECT_EQ(pair.report.matches == 0, !pair.report.hints.empty());
+      const auto& hints = pair.report.hints;
+      EXPECT_EQ(pair.report.matches == 0,
+                std::any_of(hints.begin(), hints.end(), [](const auto& hint) { return hint.rfind("no ", 0) == 0; }));
       EXPECT_FALSE(stage_report(pair.report).empty());
       EXPECT_FALSE(to_json(pair.report)["source"]["topology"].is_null());
       report = pair.report;
@@ -133,7 +135,7 @@ TEST(OddMeshes, AScanWithoutFacesIsMatched) {
   const MatchReport report = match_with_sphere(cloud(sphere()));
   EXPECT_EQ(report.source.topology->components, 0);
   EXPECT_GT(report.matches, 10);
-  EXPECT_THAT(stage_report(report), HasSubstr("0 faces (a cloud: normals towards the sensor)"));
+  EXPECT_THAT(stage_report(report), HasSubstr("0 faces, normals towards the origin"));
 }
 
 TEST(OddMeshes, OneTriangleHasNothingToMatch) {
@@ -142,7 +144,7 @@ TEST(OddMeshes, OneTriangleHasNothingToMatch) {
   for (const Mesh& mesh : {triangle, cloud(triangle), Mesh{points_of({{0, 0, 0}, {1, 0, 0}}), Triangles(0, 3)}}) {
     const MatchReport report = match_with_sphere(mesh);
     EXPECT_EQ(report.matches, 0);
-    EXPECT_THAT(report.hints, ElementsAre(HasSubstr("no keypoint on the source")));
+    EXPECT_THAT(report.hints, Contains(HasSubstr("no keypoint on the source")));
   }
 }
 
@@ -153,7 +155,7 @@ TEST(OddMeshes, NothingButFacesWithoutAreaHasNothingToMatch) {
   const MatchReport report = match_with_sphere(line);
   EXPECT_EQ(report.source.topology->degenerate_faces, 48);
   EXPECT_EQ(report.matches, 0);
-  EXPECT_THAT(report.hints, ElementsAre(HasSubstr("no keypoint on the source")));
+  EXPECT_THAT(report.hints, Contains(HasSubstr("no keypoint on the source")));
 }
 
 }  // namespace

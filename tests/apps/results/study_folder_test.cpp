@@ -26,6 +26,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    2,
                    0.25,
                    failed,
+                   "fits",
                    10,
                    5,
                    4,

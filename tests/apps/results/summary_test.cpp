@@ -107,6 +107,20 @@ TEST(Summary, MediansTakeNoPoseForTheWorst) {
   EXPECT_FALSE(first_row({none, with_rotation(1)}).of("refined_rotation_error_deg").value);
 }
 
+TEST(Summary, APairWhoseTruthDoesNotFitIsCountedApartAndInNoMean) {
+  StudyRecord fits = record_of("a", 4, 4, 4, 1), loose = record_of("b", 4, 4, 4, 1), wrong = record_of("c", 4, 4, 1, 9);
+  fits.truth = "fits", loose.truth = "loose";
+  for (const char* verdict : {"inverted", "misplaced", "translation times 0.001"}) {
+    wrong.truth = verdict;
+    const SummaryRow row = first_row({fits, loose, wrong});
+    EXPECT_EQ(row.pairs, 2);
+    EXPECT_EQ(row.misfit, 1);
+    EXPECT_EQ(row.excluded, 0);
+    EXPECT_EQ(row.of("precision").value, 1);
+    EXPECT_EQ(row.of("success_5pr").value, 1);
+  }
+}
+
 TEST(Summary, HasARowForEveryLevelAndMethodInOrder) {
   const auto rows = rows_of({record_of("a", 4, 4, 4, 1)});
   ASSERT_EQ(rows.size(), 6u);
@@ -114,8 +128,9 @@ TEST(Summary, HasARowForEveryLevelAndMethodInOrder) {
   EXPECT_EQ(rows[3].level, "2");
   EXPECT_EQ(rows[3].pairs, 0);
   EXPECT_FALSE(rows[3].of("precision").value);
-  EXPECT_THAT(summary_text(rows),
-              StartsWith("experiment,dataset,level,method,pairs,excluded,empty,precision,recall,f1,success_5pr,"));
+  EXPECT_THAT(
+      summary_text(rows),
+      StartsWith("experiment,dataset,level,method,pairs,excluded,misfit,empty,precision,recall,f1,success_5pr,"));
 }
 
 // What corral compare says of a level, cell by cell; nothing where there is nothing.

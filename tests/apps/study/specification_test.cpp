@@ -46,7 +46,7 @@ TEST(Specification, NamesWhatIsWrongAndWhatWasMeant) {
   EXPECT_THAT(with("\"st\"", "\"sst\""), HasSubstr("did you mean 'ss'?"));
   EXPECT_THAT(with("\"st\"", "\"gc\""), HasSubstr("gc occurs twice"));
   EXPECT_THAT(with("normals =", "normal ="), HasSubstr("did you mean 'normals'?"));
-  EXPECT_THAT(with("\"origin\"", "\"sensor\""), HasSubstr("expected mesh|origin"));
+  EXPECT_THAT(with("\"origin\"", "\"sensor\""), HasSubstr("expected auto|mesh|file|origin"));
   EXPECT_THAT(with("radius_pr = 2", "radius = 2"), HasSubstr("expected radius_pr"));
   EXPECT_THAT(with("radius_pr = 2", "radius_pr = 0"), HasSubstr("radius_pr is 0"));
   EXPECT_THAT(with("options.harris", "options.harris-mesh"), HasSubstr("'harris-mesh', which is not in use"));

@@ -54,8 +54,10 @@ TEST(MatchFeatures, FeaturesThatAreNotFiniteAreRefusedAmongThousands) {
       for (const Matcher matcher : {Matcher::Exact, Matcher::Flann}) {
         Eigen::MatrixXd bad = good;
         bad(39, column) = value;
-        EXPECT_THROW(match_features(bad, good, {matcher, false}), InvalidInput) << choice_text(matcher) << " " << column;
-        EXPECT_THROW(match_features(good, bad, {matcher, false}), InvalidInput) << choice_text(matcher) << " " << column;
+        EXPECT_THROW(match_features(bad, good, {matcher, false}), InvalidInput)
+            << choice_text(matcher) << " " << column;
+        EXPECT_THROW(match_features(good, bad, {matcher, false}), InvalidInput)
+            << choice_text(matcher) << " " << column;
       }
 }
 

@@ -153,19 +153,57 @@ TEST(EstimateNormals, UnitOfLengthDoesNotMatter) {
     EXPECT_LT((normals_of({scale * mesh.vertices, mesh.triangles}) - normals_of(mesh)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(NormalGuide, AutoTakesTheNamedSensorThenWhatTheMeshHas) {
+  Mesh mesh = testing::icosphere(1);
+  mesh.normals = mesh.vertices;
+  mesh.sensor = Eigen::Vector3d(0, 0, 9);
+  NormalOptions options;
+  EXPECT_EQ(normal_guide(mesh, options), NormalGuide::Faces);
+  mesh.triangles.resize(0, 3);
+  EXPECT_EQ(normal_guide(mesh, options), NormalGuide::Normals);
+  mesh.normals.resize(0, 3);
+  EXPECT_EQ(normal_guide(mesh, options), NormalGuide::OwnSensor);
+  mesh.sensor.reset();
+  EXPECT_EQ(normal_guide(mesh, options), NormalGuide::Origin);
+  options.sensor = Eigen::Vector3d(1, 2, 3);
+  EXPECT_EQ(normal_guide(testing::icosphere(1), options), NormalGuide::NamedSensor);
+  options.side = NormalSide::Mesh;
+  EXPECT_EQ(normal_guide(testing::icosphere(1), options), NormalGuide::Faces);
+  EXPECT_EQ(normal_guide(mesh, options), NormalGuide::NamedSensor);
+  options.side = NormalSide::File;
+  EXPECT_THROW(normal_guide(mesh, options), InvalidInput);
+}
+
+TEST(EstimateNormals, FollowTheNormalsOrTheSensorOfTheMesh) {
+  Mesh cloud = testing::icosphere(3);
+  const Points outward = normals_of(cloud);
+  cloud.triangles.resize(0, 3);
+  cloud.normals = -3 * cloud.vertices;  // of any length, inwards
+  EXPECT_EQ(estimate_normals(cloud), -outward);
+  cloud.normals.row(5).setZero();  // unknown there: towards the origin, which is inwards too
+  EXPECT_EQ(estimate_normals(cloud), -outward);
+  cloud.normals.resize(0, 3);
+  cloud.sensor = Eigen::Vector3d(0, 0, 50);
+  NormalOptions options;
+  options.sensor = cloud.sensor;
+  options.side = NormalSide::Origin;
+  EXPECT_EQ(estimate_normals(cloud), estimate_normals(cloud, options));
+}
+
 TEST(EstimateNormals, LookAtTheSensor) {
   Mesh mesh = testing::icosphere(3);
   NormalOptions options;
-  options.sensor << 0, 0, 40;
+  options.sensor = Eigen::Vector3d(0, 0, 40);
+  options.side = NormalSide::Mesh;
   const Points outward = estimate_normals(mesh, options);  // faces decide
-  options.side_of_faces = false;
+  options.side = NormalSide::Origin;
   const Points turned = estimate_normals(mesh, options);
   mesh.triangles.resize(0, 3);
-  options.side_of_faces = true;
+  options.side = NormalSide::Mesh;
   EXPECT_EQ(estimate_normals(mesh, options), turned);
   for (int row = 0; row < turned.rows(); ++row) {
     EXPECT_GT(outward.row(row).dot(mesh.vertices.row(row)), 0.99);
-    EXPECT_GE(turned.row(row).dot(options.sensor.transpose() - mesh.vertices.row(row)), 0);
+    EXPECT_GE(turned.row(row).dot(options.sensor->transpose() - mesh.vertices.row(row)), 0);
   }
   EXPECT_LT((turned - outward).rowwise().norm().maxCoeff(), 2.001);
   EXPECT_GT((turned - outward).rowwise().norm().maxCoeff(), 1.9) << "those on the far side are turned";

@@ -75,7 +75,7 @@ TEST(NearestSweep, NormalsAndResolutionAtOnceAreTheSameBits) {
       }
       const NormalsAndResolution found = estimate_normals_and_resolution(mesh, {k}, testing::on_three_threads);
       EXPECT_TRUE(found.normals == estimate_normals(mesh, {k}));
-      EXPECT_EQ(found.resolution, point_resolution(set.points));
+      EXPECT_EQ(found.spacing.resolution, point_resolution(set.points));
     }
 }
 
@@ -110,8 +110,8 @@ TEST(NearestSweep, ThousandsInOnePlaceCountOnce) {
     const Points others = testing::uniform_points(700, 4);
     const Points points = testing::stacked({others, others.row(5).replicate(copies, 1)});
     EXPECT_EQ(point_resolution(points), point_resolution(others)) << copies;
-    const auto [normals, resolution] = estimate_normals_and_resolution({points, Triangles(0, 3)});
-    EXPECT_EQ(resolution, point_resolution(others)) << copies;
+    const auto [normals, spacing] = estimate_normals_and_resolution({points, Triangles(0, 3)});
+    EXPECT_EQ(spacing.resolution, point_resolution(others)) << copies;
     EXPECT_TRUE(normals.row(5).isZero(0)) << "its nearest are its copies";
     for (int row = 0; row < 700; row += 50) expect_fits(points, row, 20, normals.row(row));
   }

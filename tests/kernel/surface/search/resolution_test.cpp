@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/error.h"
+#include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/reference_surface.h"
 #include "tests/support/tables.h"
@@ -32,6 +33,29 @@ TEST(PointResolution, AgreesWithBruteForce) {
        {testing::bumpy_sphere(3, 4).vertices, testing::icosphere(3).vertices, testing::icosphere(4, 250.0).vertices}) {
     const double expected = testing::reference_resolution(vertices);
     EXPECT_NEAR(point_resolution(vertices), expected, 1e-13 * expected);
+  }
+}
+
+TEST(PointSpacing, HasTheMedianAndTheStrays) {
+  Points points = testing::grid(30, 30, 1.0).vertices;
+  const PointSpacing clean = point_spacing(points);
+  EXPECT_DOUBLE_EQ(clean.resolution, 1);
+  EXPECT_DOUBLE_EQ(clean.median, 1);
+  EXPECT_DOUBLE_EQ(clean.without_strays, 1);
+  EXPECT_TRUE(clean.strays.empty());
+  EXPECT_FALSE(clean.is_moved_by_strays(900));
+  points.row(17) << 15, 15, 4500;
+  points.row(40) << 15, 15, 4500;  // twice in one place: a stray still
+  for (int threads = 0; threads < 2; ++threads) {
+    const PointSpacing moved =
+        point_spacing(points, threads == 0 ? ParallelFor(one_by_one) : testing::on_three_threads);
+    EXPECT_EQ(moved.strays, (Indices{17, 40}));
+    EXPECT_DOUBLE_EQ(moved.median, 1);
+    EXPECT_DOUBLE_EQ(moved.without_strays, 1);
+    EXPECT_DOUBLE_EQ(moved.stray_distance, Eigen::Vector3d(0, 0, 4500).norm());
+    EXPECT_NEAR(moved.resolution, (898 + 4500) / 899.0, 1e-9);
+    EXPECT_TRUE(moved.is_moved_by_strays(900));
+    EXPECT_FALSE(moved.is_moved_by_strays(100)) << "that would be many";
   }
 }
 
