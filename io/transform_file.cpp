@@ -1,57 +1,124 @@
 // SPDX-License-Identifier: MIT
 #include "io/transform_file.h"
 
-#include <Eigen/LU>
-#include <vector>
+#include <algorithm>
+#include <filesystem>
 
 #include "io/file.h"
 #include "io/line_reader.h"
+#include "io/pose_entry.h"
+#include "io/toml_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 namespace {
 
-constexpr double kOrthonormal = 1e-4;
+/// Times may be written in several ways: 7, 7.0, 07.
+bool same_name(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const std::optional<double> first = parse_double(a), second = parse_double(b);
+  return first && second && *first == *second;
+}
 
-void check_rigid(const std::string& path, const Eigen::Matrix4d& matrix) {
-  const Eigen::RowVector4d last = matrix.row(3);
-  if (!(last - Eigen::RowVector4d(0, 0, 0, 1)).isZero(0))
-    throw IoError(path, "row 4",
-                  "is " + to_text(last(0)) + " " + to_text(last(1)) + " " + to_text(last(2)) + " " + to_text(last(3)) +
-                      ", expected 0 0 0 1");
-  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  if (is_rotation(rotation, kOrthonormal)) return;
-  const double excess = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  throw IoError(path, "rotation",
-                "not rigid: R R^T differs from the identity by " + to_text(excess) + " and det R is " +
-                    to_text(rotation.determinant()) + ", expected at most 0.0001 and +1");
+std::string key_of(const PoseEntry& entry) {
+  return entry.target.empty() ? entry.source : entry.source + "," + entry.target;
+}
+
+/// The poses of a file, by the names of what they map.
+class PoseList {
+ public:
+  PoseList(const TransformName& name, const std::vector<PoseEntry>& entries) : name_(name), entries_(entries) {}
+
+  StoredTransform chosen() const {
+    if (name_.key.empty()) {
+      if (entries_.size() == 1) return pose(entries_[0]);
+      throw IoError(
+          name_.file, "",
+          "has " + std::to_string(entries_.size()) + " poses, expected FILE:KEY, which names one of " + keys());
+    }
+    if (const PoseEntry* entry = find(name_.key, "")) return pose(*entry);
+    const std::size_t comma = name_.key.find(',');
+    if (comma == std::string::npos) fail();
+    const std::string source = name_.key.substr(0, comma), target = name_.key.substr(comma + 1);
+    if (source.empty() || target.empty()) fail();
+    return between(source, target);
+  }
+
+ private:
+  StoredTransform pose(const PoseEntry& entry) const { return rigid_pose(name_.file, entry); }
+
+  const PoseEntry* find(const std::string& source, const std::string& target) const {
+    const PoseEntry* found = nullptr;
+    for (const PoseEntry& entry : entries_) {
+      if (!same_name(entry.source, source) || !same_name(entry.target, target)) continue;
+      if (found) throw IoError(name_.file, entry.place, "the pose " + key_of(entry) + " is there twice, expected once");
+      found = &entry;
+    }
+    return found;
+  }
+
+  StoredTransform between(const std::string& source, const std::string& target) const {
+    if (const PoseEntry* entry = find(source, target)) return pose(*entry);
+    if (const PoseEntry* entry = find(target, source)) {
+      const StoredTransform stored = pose(*entry);
+      StoredTransform inverse{stored.inverse(), stored.notes};
+      inverse.notes.push_back("it is the inverse of the stored pose, which maps " + target + " into " + source);
+      return inverse;
+    }
+    const PoseEntry *from = find(source, ""), *into = find(target, "");
+    if (!from || !into) fail();
+    if (from->world != into->world)
+      throw IoError(name_.file, "pose " + name_.key,
+                    "the two are seen by the cameras of two images, expected two in one image");
+    const StoredTransform world_from_source = pose(*from), world_from_target = pose(*into);
+    StoredTransform relative{world_from_target.inverse() * world_from_source, world_from_source.notes};
+    for (const std::string& note : world_from_target.notes)
+      if (std::find(relative.notes.begin(), relative.notes.end(), note) == relative.notes.end())
+        relative.notes.push_back(note);
+    return relative;
+  }
+
+  std::string keys() const {
+    constexpr std::size_t kShown = 5;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kShown, entries_.size()); ++i)
+      text += (i > 0 ? ", " : "") + corral::quoted(key_of(entries_[i]));
+    return text + (entries_.size() > kShown ? ", ... " + corral::quoted(key_of(entries_.back())) : "");
+  }
+
+  [[noreturn]] void fail() const {
+    std::vector<std::string> known;
+    for (const PoseEntry& entry : entries_) known.push_back(key_of(entry));
+    const std::string nearest = nearest_name(name_.key, known);
+    throw IoError(name_.file, "pose " + name_.key,
+                  "is not there, expected one of " + keys() + ", or SOURCE,TARGET of two of them" +
+                      (nearest.empty() ? "" : "; did you mean " + corral::quoted(nearest) + "?"));
+  }
+
+  const TransformName& name_;
+  const std::vector<PoseEntry>& entries_;
+};
+
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
 }
 
 }  // namespace
 
-RigidTransform read_transform(const std::string& path) {
-  std::string content = read_file(path);
-  if (content.empty()) throw IoError(path, "", "the file is empty, expected a 4x4 matrix");
-  content += '\n';  // the last row must be 0 0 0 1, so that a truncated one is noticed
-  LineReader reader(path, content, '#');
-  std::vector<double> numbers;
-  while (reader.next())
-    for (const std::string_view field : reader.fields()) numbers.push_back(reader.finite_number(field));
-  if (numbers.size() != 16)
-    throw IoError(path, "", "found " + std::to_string(numbers.size()) + " numbers, expected the 16 of a 4x4 matrix");
-  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
-  check_rigid(path, matrix);
-  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+TransformName split_transform_name(const std::string& name) {
+  if (!is_file(name))
+    for (std::size_t colon = name.find(':'); colon != std::string::npos; colon = name.find(':', colon + 1))
+      if (is_file(name.substr(0, colon))) return {name.substr(0, colon), name.substr(colon + 1)};
+  return {name, ""};
 }
 
-std::string transform_text(const RigidTransform& transform) {
-  std::string text;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) text += to_text(transform.rotation(row, column)) + " ";
-    text += to_text(transform.translation(row)) + "\n";
-  }
-  return text + "0 0 0 1\n";
+StoredTransform read_transform(const std::string& name) {
+  const TransformName split = split_transform_name(name);
+  const std::vector<PoseEntry> entries = parse_poses(split.file, read_file(split.file));
+  return PoseList(split, entries).chosen();
 }
 
 }  // namespace corral

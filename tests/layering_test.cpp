@@ -49,7 +49,7 @@ std::map<std::string, Room> make_rooms() {
       {"grouping", {{"kernel", "grouping"}, {"Eigen", "hwy"}}},
       {"refine", {{"kernel", "refine"}, {"Eigen", "hwy", "ceres"}}},
   };
-  Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "toml++"}};
+  Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "nlohmann", "toml++"}};
   pipeline.includes.insert("kernel");
   io.includes.insert({"kernel", "io"});
   rooms[surface] = pipeline;

@@ -16,14 +16,17 @@ namespace {
 
 using ::testing::AllOf;
 using testing::complaint;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::put_text;
 using testing::replaced;
 using testing::ScratchFolder;
 
 const std::string kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
-RigidTransform read_text(const std::string& text) {
+StoredTransform read_text(const std::string& text) {
   const ScratchFolder folder;
   return read_transform(put_text(folder / "pose.txt", text));
 }
@@ -73,14 +76,15 @@ TEST(TransformFile, AcceptsCrLfTabsCommentsAndAMissingLastNewline) {
 
 TEST(TransformFile, RefusesAnyOtherNumberOfNumbers) {
   EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
-  EXPECT_THAT(refusal("\n"), HasSubstr("found 0 numbers, expected the 16 of a 4x4 matrix"));
-  EXPECT_THAT(refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n"), HasSubstr("found 12 numbers"));
+  EXPECT_THAT(refusal("\n"), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal("# nothing\n"), HasSubstr("found 0 numbers in 0 rows, expected the 16 of a 4x4 matrix"));
+  EXPECT_THAT(refusal("1 0 0 0\n0 1 0 0\n0 0 1\n"), HasSubstr("found 11 numbers in 3 rows"));
   EXPECT_THAT(refusal(kIdentity + "0\n"), HasSubstr("found 17 numbers"));
   EXPECT_THAT(refusal(kIdentity + kIdentity), HasSubstr("found 32 numbers"));
 }
 
 TEST(TransformFile, NamesTheLineOfWhatIsNoFiniteNumber) {
-  for (const char* bad : {"nan", "inf", "-inf", "x", "1e999", "1,"})
+  for (const char* bad : {"nan", "inf", "-inf", "x", "1e999", "1:"})
     EXPECT_THAT(refusal(replaced(kIdentity, "0 1 0 0", "0 1 0 " + std::string(bad))),
                 AllOf(HasSubstr("line 2: found '" + std::string(bad)), HasSubstr("number")));
 }
@@ -93,12 +97,15 @@ TEST(TransformFile, RefusesWhatIsNotRigidWithTheNumbers) {
   shear(0, 1) = 0.5;
   EXPECT_EQ(
       refusal(text_of_rotation(2 * Eigen::Matrix3d::Identity())),
-      ", rotation: not rigid: R R^T differs from the identity by 3 and det R is 8, expected at most 0.0001 and +1");
-  EXPECT_THAT(refusal(text_of_rotation(mirror)), HasSubstr("by 0 and det R is -1"));
+      ", rotation: not rigid: R R^T differs from the identity by 3 and det R is 8, expected at most 0.0001 and +1: "
+      "it is scaled by 2");
+  EXPECT_THAT(refusal(text_of_rotation(mirror)),
+              AllOf(HasSubstr("by 0 and det R is -1"), EndsWith(": it is mirrored")));
+  EXPECT_THAT(refusal(text_of_rotation(0.001 * mirror * rotation)), EndsWith(": it is mirrored and scaled by 0.001"));
   EXPECT_THAT(refusal(text_of_rotation(stretch)), HasSubstr("by 1.25 and det R is 1.5"));
   EXPECT_THAT(refusal(text_of_rotation(shear)), HasSubstr("by 0.5 and det R is 1"));
   EXPECT_THAT(refusal(text_of_rotation(Eigen::Matrix3d::Zero())), HasSubstr("by 1 and det R is 0"));
-  EXPECT_THAT(refusal(text_of_rotation(1.001 * rotation)), HasSubstr("not rigid"));
+  EXPECT_THAT(refusal(text_of_rotation(1.001 * rotation)), AllOf(HasSubstr("not rigid"), EndsWith("scaled by 1.001")));
   EXPECT_THAT(refusal(text_of_rotation(1e200 * rotation)), HasSubstr("not rigid"));
 }
 
@@ -111,19 +118,36 @@ TEST(TransformFile, AcceptsRoundedRotations) {
 }
 
 TEST(TransformFile, TheLastRowIsExact) {
-  EXPECT_EQ(refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0.5 1\n"), ", row 4: is 0 0 0.5 1, expected 0 0 0 1");
+  EXPECT_EQ(refusal("1 0 0 2\n0 1 0 0\n0 0 1 0\n0 0 0.5 1\n"), ", row 4: is 0 0 0.5 1, expected 0 0 0 1");
   EXPECT_THAT(refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 2\n"), HasSubstr("row 4: is 0 0 0 2, expected 0 0 0 1"));
-  EXPECT_THAT(refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"), HasSubstr("row 4")) << "column-major";
+  EXPECT_THAT(
+      refusal("1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"),
+      EndsWith(
+          "row 4: is 1 2 3 1, expected 0 0 0 1: the matrix is transposed, its translation stands in the last row"));
+  EXPECT_THAT(refusal("1 0 0\n0 1 0\n0 0 1\n1 2 3\n"), HasSubstr("4 rows of 3 numbers, expected 3 rows of 4"));
 }
 
-// The last number is always 1, so a cut either takes away a number or changes nothing.
-TEST(TransformFile, TruncationAtEveryByteIsAnErrorOrLosesNothing) {
+// The last row says nothing, so a cut in it loses nothing; one in the last number of the row before it is told.
+TEST(TransformFile, TruncationAtEveryByteIsAnErrorOrToldOrLosesNothing) {
   RandomStream random(6);
   const RigidTransform motion{random.rotation(), random.direction()};
   const std::string whole = transform_text(motion);
-  for (std::size_t length = 0; length + 1 < whole.size(); ++length)
-    EXPECT_NE(refusal(whole.substr(0, length)), "") << "cut at byte " << length;
+  const std::size_t third = whole.size() - std::string("\n0 0 0 1\n").size();
+  int told = 0;
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
+    const std::string cut = whole.substr(0, length);
+    if (!refusal(cut).empty()) continue;
+    if (length == third + 1) {
+      expect_same(read_text(cut), motion);
+      continue;
+    }
+    ++told;
+    EXPECT_LE(length, third) << "cut at byte " << length;
+    EXPECT_THAT(read_text(cut).notes, ElementsAre(HasSubstr("its last number is wrong"))) << "cut at byte " << length;
+  }
+  EXPECT_GT(told, 5);
   expect_same(read_text(whole.substr(0, whole.size() - 1)), motion);
+  EXPECT_THAT(read_text(whole.substr(0, whole.size() - 1)).notes, IsEmpty());
 }
 
 }  // namespace
