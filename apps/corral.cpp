@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   corral::add_tables(app, action);
   corral::add_perturb(app, action);
   corral::add_scan(app, action);
+  corral::add_transform(app, action);
   corral::add_triangulate(app, action);
   corral::add_evaluate(app, action);
   corral::add_dataset(app, action);

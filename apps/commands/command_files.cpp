@@ -7,6 +7,7 @@
 #include "apps/pair/read_surface.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/runtime/output.h"
+#include "io/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -45,9 +46,11 @@ Mesh read_input(const std::string& path, bool drop_stray) {
 
 void keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs)
-    for (const std::string& input : inputs)
+    for (const std::string& name : inputs) {
+      const std::string input = split_transform_name(name).file;  // of poses a key may follow
       if (!output.empty() && !input.empty() && is_stored(input) && is_same_file(output, input))
         throw UsageError(output + ": is an input of this call, expected another name for the output");
+    }
 }
 
 }  // namespace corral

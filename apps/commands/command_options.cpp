@@ -7,7 +7,9 @@
 
 #include "apps/pair/option_names.h"
 #include "apps/runtime/memory.h"
+#include "apps/runtime/output.h"
 #include "io/toml_file.h"
+#include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
@@ -132,6 +134,29 @@ ConfiguredGrouper configure_grouper(const std::string& name, const OptionsByName
 void check_threshold(double threshold_pr) {
   if (!(threshold_pr >= 0) || !std::isfinite(threshold_pr))
     throw UsageError("--threshold-pr: expected a finite length of at least 0");
+}
+
+RigidTransform read_pose(const std::string& name) {
+  const StoredTransform pose = read_transform(name);
+  for (const std::string& note : pose.notes) say("Note: " + name + ": " + note);
+  return pose;
+}
+
+CLI::Option* add_truth_options(CLI::App& command, TruthSettings& settings, const std::string& purpose) {
+  auto* truth = command
+                    .add_option("--truth", settings.file,
+                                "True target_from_source, in any layout that 'corral transform --help' lists; one of "
+                                "several poses is FILE:KEY" +
+                                    purpose)
+                    ->type_name("FILE[:KEY]");
+  command.add_flag("--truth-inverse", settings.is_inverse, "The file has source_from_target: take the inverse")
+      ->needs(truth);
+  return truth;
+}
+
+RigidTransform read_truth(const TruthSettings& settings) {
+  const RigidTransform pose = read_pose(settings.file);
+  return settings.is_inverse ? pose.inverse() : pose;
 }
 
 Eigen::Vector3d parse_vector(const std::string& option, const std::string& text) {

@@ -9,6 +9,7 @@
 #include "apps/commands/commands.h"
 #include "apps/pair/match_settings.h"
 #include "grouping/registry.h"
+#include "kernel/rigid_transform.h"
 #include "kernel/surface/scan/view_triangulation.h"
 
 // Options that several subcommands have. Whatever is wrong with them is a UsageError.
@@ -37,6 +38,19 @@ OptionsByName surface_part(const OptionsByName& options);
 ConfiguredGrouper configure_grouper(const std::string& name, const OptionsByName& options);
 
 void check_threshold(double threshold_pr);
+
+/// A pose of a file, FILE or FILE:KEY; what was done to read it is said on stderr.
+RigidTransform read_pose(const std::string& name);
+
+/// --truth and --truth-inverse.
+struct TruthSettings {
+  std::string file;
+  bool is_inverse = false;
+  bool empty() const { return file.empty(); }
+};
+/// `purpose` follows what a truth is; returns the option --truth.
+CLI::Option* add_truth_options(CLI::App& command, TruthSettings& settings, const std::string& purpose = "");
+RigidTransform read_truth(const TruthSettings& settings);
 
 /// The text of an option as a point or direction "x,y,z".
 Eigen::Vector3d parse_vector(const std::string& option, const std::string& text);

@@ -27,6 +27,7 @@ void add_score(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_tables(CLI::App& app, Action& action);  ///< groupers, detectors, descriptors
 void add_perturb(CLI::App& app, Action& action);
+void add_transform(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);

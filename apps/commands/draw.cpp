@@ -10,7 +10,6 @@
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
-#include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 
@@ -18,7 +17,8 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string source, target, matches, truth, output;
+  std::string source, target, matches, output;
+  TruthSettings truth;
   std::vector<std::string> groups, poses;
   double threshold_pr = 4;
   int width = 1600;
@@ -39,7 +39,7 @@ void check(const Settings& settings) {
   if (settings.width < 200 || settings.width > 3000) throw UsageError("--width: expected 200 to 3000 pixels");
   if (std::filesystem::path(settings.output).extension() != ".png")
     throw UsageError("--output " + settings.output + ": expected a name that ends in .png");
-  keep_inputs({settings.source, settings.target, settings.matches, settings.truth}, {settings.output});
+  keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, {settings.output});
   check_writable(settings.output);
 }
 
@@ -78,7 +78,7 @@ Image draw_groups(PairScene& scene, const Settings& settings) {
 
 Image draw_poses(PairScene& scene, const Settings& settings) {
   std::vector<DrawnPose> poses;
-  for (const std::string& path : settings.poses) poses.push_back({title_of(path), read_transform(path)});
+  for (const std::string& path : settings.poses) poses.push_back({title_of(path), read_pose(path)});
   if (!scene.truth) scene.truth = poses.front().target_from_source;
   const int columns = static_cast<int>(poses.size());
   return contact_sheet(alignment_pictures(scene, poses, settings.width / columns), columns);
@@ -89,7 +89,7 @@ int draw(const Settings& settings) {
   Progress progress(2);
   progress.begin("surfaces");
   PairScene scene;
-  if (!settings.truth.empty()) scene.truth = read_transform(settings.truth);
+  if (!settings.truth.empty()) scene.truth = read_truth(settings.truth);
   scene.source = painted_surface(read_input(settings.source));
   scene.target = painted_surface(read_input(settings.target));
   progress.begin("picture");
@@ -113,12 +113,9 @@ void add_draw(CLI::App& app, Action& action) {
       ->add_option("--pose", settings->poses,
                    "Draws the source aligned with the target by this pose; several side by side")
       ->type_name("FILE");
-  command
-      ->add_option(
-          "--truth", settings->truth,
-          "True target_from_source, a 4x4 matrix: correct matches are green, incorrect ones red, missed ones faint, "
-          "and both meshes are seen from the same side")
-      ->type_name("FILE");
+  add_truth_options(*command, settings->truth,
+                    ": correct matches are green, incorrect ones red, missed ones faint, and both meshes are seen from "
+                    "the same side");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
       ->capture_default_str();
   command->add_option("--width", settings->width, "Width of the picture in pixels")->capture_default_str();

@@ -18,7 +18,8 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string matches, group, truth, start, loss = choice_names(RobustLoss())[int(RefineOptions().loss)], output;
+  std::string matches, group, start, loss = choice_names(RobustLoss())[int(RefineOptions().loss)], output;
+  TruthSettings truth;
   double threshold_pr = 4;
   RefineOptions options;
   bool json = false;
@@ -41,7 +42,7 @@ RobustLoss loss_of(const std::string& text) {
 /// Scores the selection and judges its pose over the source points of the correct matches, a part of the overlap that is
 /// known without the meshes.
 void judge(MethodRecord& record, const CorrespondenceSet& matches, const Settings& settings) {
-  PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
+  PairTruth truth{read_truth(settings.truth), {}, settings.threshold_pr};
   const std::vector<bool> labels = label_correct(matches, truth.target_from_source, settings.threshold_pr);
   record.score = score_grouping(labels, record.found.selected);
   Indices correct;
@@ -71,11 +72,11 @@ int refine(Settings settings) {
   settings.options.loss = loss_of(settings.loss);
   if (!(settings.options.loss_scale_pr > 0) || !std::isfinite(settings.options.loss_scale_pr))
     throw UsageError("--loss-scale-pr: expected a finite length above 0");
-  keep_inputs({settings.matches, settings.group, settings.truth, settings.start}, {settings.output});
+  keep_inputs({settings.matches, settings.group, settings.truth.file, settings.start}, {settings.output});
   const CorrespondenceSet matches = read_matches(settings.matches);
   const GroupTable group = read_group_of(settings.group, matches.size());
   std::optional<RigidTransform> start;
-  if (!settings.start.empty()) start = read_transform(settings.start);
+  if (!settings.start.empty()) start = read_pose(settings.start);
   MethodRecord record;
   record.found.selected = group.selected;
   record.pose = refine_rigid(matches, group.selected, settings.options, start);
@@ -99,10 +100,7 @@ void add_refine(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("group", settings->group, "Selection from it")->type_name("FILE")->required();
-  command
-      ->add_option("--truth", settings->truth,
-                   "True target_from_source, a 4x4 matrix: adds the errors of the pose and of its start")
-      ->type_name("FILE");
+  add_truth_options(*command, settings->truth, ": adds the errors of the pose and of its start");
   command->add_option("--loss", settings->loss, "Robust loss: " + loss_names(", "))->capture_default_str();
   command
       ->add_option("--loss-scale-pr", settings->options.loss_scale_pr,
@@ -110,8 +108,8 @@ void add_refine(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--start", settings->start,
-                   "Where to start, a 4x4 matrix (default: the least-squares fit to the selection)")
-      ->type_name("FILE");
+                   "Where to start, a pose in any layout (default: the least-squares fit to the selection)")
+      ->type_name("FILE[:KEY]");
   command
       ->add_option("--threshold-pr", settings->threshold_pr,
                    "Largest residual of a correct match; RMSE is over the source points of the correct matches")

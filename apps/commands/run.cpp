@@ -24,7 +24,8 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string source, target, truth, methods = "all", output;
+  std::string source, target, methods = "all", output;
+  TruthSettings truth;
   double threshold_pr = 4;
   int repeat = 1;
   std::uint64_t memory_limit = 0;
@@ -177,8 +178,8 @@ PairRun evaluate(const Settings& settings) {
   run.methods = method_names(settings.methods);
   const OptionsByName options = parse_set(settings.set);
   for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
-  keep_inputs({settings.source, settings.target, settings.truth}, files_of_run(settings.output));
-  if (!settings.truth.empty()) run.truth = PairTruth{read_transform(settings.truth), {}, settings.threshold_pr};
+  keep_inputs({settings.source, settings.target, settings.truth.file}, files_of_run(settings.output));
+  if (!settings.truth.empty()) run.truth = PairTruth{read_truth(settings.truth), {}, settings.threshold_pr};
   const Mesh source = read_input(settings.source, settings.drop_stray);
   const Mesh target = read_input(settings.target, settings.drop_stray);
   if (!settings.output.empty()) {  // before the work, not after it
@@ -268,8 +269,7 @@ void add_run(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   command->add_option("source", settings->source, "Source mesh (a model)")->type_name("FILE")->required();
   command->add_option("target", settings->target, "Target mesh (a scene)")->type_name("FILE")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix: adds scores and errors")
-      ->type_name("FILE");
+  add_truth_options(*command, settings->truth, ": adds scores and errors");
   command->add_option("--methods", settings->methods, "all, or names between commas: " + names_of(groupers(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");

@@ -10,20 +10,20 @@
 #include "apps/runtime/text_table.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
-#include "io/transform_file.h"
 
 namespace corral {
 namespace {
 
 struct Settings {
-  std::string matches, group, truth, source, target;
+  std::string matches, group, source, target;
+  TruthSettings truth;
   double threshold_pr = 4;
   bool json = false;
 };
 
 /// The least-squares fit to the selection against the truth; without the meshes, over no points.
 MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group, const Settings& settings) {
-  PairTruth truth{read_transform(settings.truth), {}, settings.threshold_pr};
+  PairTruth truth{read_truth(settings.truth), {}, settings.threshold_pr};
   if (!settings.source.empty()) {
     const Mesh source = read_input(settings.source), target = read_input(settings.target);
     const TruthFit fit = fit_truth(source, target, truth.target_from_source, point_spacing(source.vertices),
@@ -71,9 +71,7 @@ void add_score(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("group", settings->group, "Selection from it")->type_name("FILE")->required();
-  command->add_option("--truth", settings->truth, "True target_from_source, a 4x4 matrix")
-      ->type_name("FILE")
-      ->required();
+  add_truth_options(*command, settings->truth)->required();
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
       ->capture_default_str();
   command->add_option("--source", settings->source, "Source mesh: with --target adds RMSE over the overlap and ADD")

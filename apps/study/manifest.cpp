@@ -7,6 +7,8 @@
 #include "apps/runtime/build_info.h"
 #include "apps/runtime/json.h"
 #include "grouping/registry.h"
+#include "io/file.h"
+#include "io/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -109,7 +111,8 @@ InputHashes hash_inputs(const WorkList& list) {
     for (const std::string& file : {unit.pair.source, unit.pair.target, unit.pair.truth}) {
       if (file.empty() || inputs.count(file)) continue;
       try {
-        inputs[file] = content_hash(read_file(file));
+        const auto [name, key] = split_transform_name(file);  // a truth may be one of several in its file
+        inputs[file] = content_hash(read_file(name) + key);
       } catch (const IoError&) {
         inputs[file] = "";  // the record of the pair reports it
       }
