@@ -127,16 +127,34 @@ TEST(Mutation, Group) {
   });
 }
 
-TEST(Mutation, Transform) {
-  RandomStream random(8);
-  const RigidTransform motion{random.rotation(), random.direction()};
+/// Whatever is accepted is rigid.
+void survive_as_pose(const std::string& content, std::uint64_t seed, const std::string& key = "") {
   const ScratchFolder folder;
   const std::string path = folder / "pose.txt";
-  survive(transform_text(motion), 9, [&](const std::string& bad) {
-    const RigidTransform read = read_transform(put_text(path, bad));
+  survive(content, seed, [&](const std::string& bad) {
+    const RigidTransform read = read_transform(put_text(path, bad) + key);
     EXPECT_TRUE(is_rotation(read.rotation, 1e-4)) << bad;
     EXPECT_TRUE(read.translation.allFinite()) << bad;
   });
+}
+
+TEST(Mutation, Transform) {
+  RandomStream random(8);
+  const RigidTransform motion{random.rotation(), random.direction()};
+  for (std::size_t layout = 0; layout < choice_names(TransformLayout()).size(); ++layout)
+    survive_as_pose(transform_text(motion, static_cast<TransformLayout>(layout)), 9 + layout);
+}
+
+TEST(Mutation, TransformsByName) {
+  RandomStream random(9);
+  const RigidTransform motion{random.rotation(), random.direction()};
+  const auto twice = [&](TransformLayout layout, const std::string& a, const std::string& b) {
+    return transform_text(motion, layout, a) + transform_text(motion.inverse(), layout, b);
+  };
+  survive_as_pose(twice(TransformLayout::Kitti, "", ""), 21, ":0,1");
+  survive_as_pose(twice(TransformLayout::Tum, "1.5", "2.5"), 22, ":1.5,2.5");
+  survive_as_pose(twice(TransformLayout::Log, "3,0", "3,2"), 23, ":0,3");
+  survive_as_pose(twice(TransformLayout::Conf, "a.ply", "b.ply"), 24, ":a.ply,b.ply");
 }
 
 }  // namespace
