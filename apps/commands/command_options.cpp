@@ -138,7 +138,7 @@ void check_threshold(double threshold_pr) {
 
 RigidTransform read_pose(const std::string& name) {
   const StoredTransform pose = read_transform(name);
-  for (const std::string& note : pose.notes) say("Note: " + name + ": " + note);
+  for (const std::string& note : pose.notes) say("note: " + name + ": " + note);
   return pose;
 }
 

@@ -2,10 +2,9 @@
 // corral transform: poses from one layout to another, inverted, composed, and applied to a mesh.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <filesystem>
 
+#include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/read_surface.h"
 #include "apps/runtime/output.h"
 #include "io/file.h"
 #include "io/mesh_file.h"
@@ -28,17 +27,11 @@ TransformLayout layout_of(const std::string& name) {
   return static_cast<TransformLayout>(std::find(kLayouts.begin(), kLayouts.end(), name) - kLayouts.begin());
 }
 
-/// Refuses to replace what is read, under any of its names.
 void check_output(const Settings& settings) {
   if (settings.output.empty()) return;
-  std::vector<std::string> inputs = {split_transform_name(settings.pose).file};
-  for (const std::string& pose : settings.then) inputs.push_back(split_transform_name(pose).file);
-  if (!settings.mesh.empty()) inputs.push_back(settings.mesh);
-  for (const std::string& input : inputs) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(input, settings.output, ignored))
-      throw UsageError("--output " + settings.output + ": is an input, expected another file");
-  }
+  std::vector<std::string> inputs = settings.then;
+  inputs.insert(inputs.end(), {settings.pose, settings.mesh});
+  keep_inputs(inputs, {settings.output});
   if (!settings.mesh.empty()) check_ply_name(settings.output);
   check_writable(settings.output);
 }
@@ -73,7 +66,7 @@ int transform(const Settings& settings) {
     }
   };
   if (!settings.mesh.empty())
-    write_mesh(settings.output, move_mesh(read_surface(settings.mesh), target_from_source));
+    write_mesh(settings.output, move_mesh(read_input(settings.mesh), target_from_source));
   else if (!settings.output.empty() || !settings.json)
     put(settings.output, text());
   if (settings.json) put("", in_json(target_from_source));

@@ -59,10 +59,10 @@ TEST(Transform, NamesOneOfSeveralAndSaysWhatItDid) {
   expect_ok(stored);
   EXPECT_EQ(stored.out, kTurn);
   EXPECT_EQ(inverse.status, 0);
-  EXPECT_EQ(inverse.err, "Note: gt.log:0,3: it is the inverse of the stored pose, which maps 3 into 0\n");
+  EXPECT_EQ(inverse.err, "note: gt.log:0,3: it is the inverse of the stored pose, which maps 3 into 0\n");
   EXPECT_EQ(inverse.out, place.corral("transform gt.log:3,0 --inverse").out);
   place.put("round.txt", kThreeDigits);
-  EXPECT_THAT(place.corral("transform round.txt").err, StartsWith("Note: round.txt: the rotation is printed with 3"));
+  EXPECT_THAT(place.corral("transform round.txt").err, StartsWith("note: round.txt: the rotation is printed with 3"));
   const Outcome unknown = place.corral("transform gt.log:7,0");
   EXPECT_EQ(unknown.status, 3);
   EXPECT_THAT(unknown.err, HasSubstr("gt.log, pose 7,0: is not there, expected one of '3,0', '3,2'"));
@@ -106,7 +106,7 @@ TEST(Transform, RefusesWrongUsageAndItsOwnInputs) {
   std::filesystem::create_symlink("ball.ply", place / "link.ply");
   const auto before = place.names();
   for (const auto& [arguments, sentence] : std::vector<std::pair<std::string, std::string>>{
-           {"pose.txt -o pose.txt", "--output pose.txt: is an input, expected another file"},
+           {"pose.txt -o pose.txt", "pose.txt: is an input of this call, expected another name for the output"},
            {"gt.log:3,0 -o ./gt.log", "is an input"},
            {"pose.txt --compose gt.log:3,0 -o gt.log", "is an input"},
            {"pose.txt --apply ball.ply -o ball.ply", "is an input"},
@@ -164,7 +164,7 @@ TEST(Truth, WhatWasDoneToReadItIsSaid) {
   for (const char* command : {"score matches.csv group.csv --truth round.txt",
                               "refine matches.csv group.csv -o pose.txt --json --truth round.txt",
                               "refine matches.csv group.csv -o pose.txt --json --start round.txt"})
-    EXPECT_THAT(place.corral(command).err, StartsWith("Note: round.txt: the rotation is printed with 3 digits"))
+    EXPECT_THAT(place.corral(command).err, StartsWith("note: round.txt: the rotation is printed with 3 digits"))
         << command;
 }
 
@@ -183,7 +183,7 @@ TEST(Truth, PairsOfADataSetNameOneOfSeveral) {
             "pair,source,target,truth\none,model.ply,copy.ply,\"gt.log:4,5\"\ntwo,copy.ply,model.ply,\"gt.log:7,0\"\n");
   const Outcome bad = place.corral("dataset check .");
   EXPECT_EQ(bad.status, 3);
-  EXPECT_THAT(bad.out + bad.err, HasSubstr("invers"));
+  EXPECT_THAT(bad.out + bad.err, HasSubstr("the truth fits inverted"));
   EXPECT_THAT(bad.out + bad.err, HasSubstr("pose 7,0: is not there"));
 }
 
