@@ -64,6 +64,7 @@ std::map<std::string, Room> make_rooms() {
   Names under_figures = rooms["apps/report"].includes;
   under_figures.erase("apps/report");  // figures know no report
   rooms["apps/report/figure"] = {under_figures, kAppLibraries};
+  rooms["apps/report/figure"].libraries.insert("fontconfig");  // measures text
   rooms["apps"] = {below, kAppLibraries};  // the program itself
   return rooms;
 }

@@ -6,6 +6,7 @@
 
 #include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
+#include "apps/report/figure/folders.h"
 #include "apps/report/figure/gnuplot.h"
 #include "apps/report/figure/rank_diagram.h"
 #include "apps/report/page.h"
@@ -46,17 +47,28 @@ std::vector<std::string> write_figures(const StudyFigures& figures, const std::v
                                        const std::string& folder) {
   std::vector<FileContent> files;
   std::vector<std::string> names;
-  const auto add = [&](const std::string& name, const std::string& csv, const std::string& script) {
-    files.push_back({folder + name + ".csv", csv});
-    files.push_back({folder + name + ".gp", script});
+  const auto add_data = [&](const std::string& name, const std::string& csv) {
+    files.push_back({folder + kData + name + ".csv", csv});
+  };
+  const auto add_script = [&](const std::string& name, const std::string& script) {
+    files.push_back({folder + kScripts + name + ".gp", script});
     names.push_back(name);
   };
-  for (const Panel& panel : figures.panels) {
-    add(panel.name, panel_csv(panel), panel_script(panel));
-    files.push_back({folder + panel.name + ".tex", panel_latex(panel)});
+  for (const PanelFigure& figure : figures.panels) {
+    for (const Panel& panel : figure.panels) {
+      add_data(panel.name, panel_csv(panel));
+      files.push_back({folder + kTables + panel.name + ".tex", panel_latex(panel)});
+    }
+    add_script(figure.name, panel_script(figure));
   }
-  for (const BoxPanel& panel : figures.boxes) add(panel.name, box_csv(panel), box_script(panel));
-  for (const RankDiagram& diagram : ranks) add(diagram.name, rank_csv(diagram), rank_script(diagram));
+  for (const BoxPanel& panel : figures.boxes) {
+    add_data(panel.name, box_csv(panel));
+    add_script(panel.name, box_script(panel));
+  }
+  for (const RankDiagram& diagram : ranks) {
+    add_data(diagram.name, rank_csv(diagram));
+    add_script(diagram.name, rank_script(diagram));
+  }
   write_files(files);
   return names;
 }
@@ -91,8 +103,9 @@ int report(const Settings& settings) {
   const std::vector<StudyResults> studies = results_of(runs);
   const StudyFigures figures = study_figures(studies);
   const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
-  const std::string folder = settings.output + "/", pictures = folder + "pairs/";
-  make_folder(gallery.empty() ? folder : pictures);
+  const std::string folder = settings.output + "/", pictures = folder + kPictures;
+  for (const char* part : {kFigures, kScripts, kData, kTables}) make_folder(folder + part);
+  if (!gallery.empty()) make_folder(pictures);
   const std::vector<std::string> names = write_figures(figures, rank_diagrams(studies), folder);
   Progress progress(40 + static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
   progress.begin("page", 40);
@@ -131,8 +144,10 @@ void add_report(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->footer(
       "index.html is the whole report on one page that opens from disk; claims.txt says which findings hold.\n"
-      "Every figure is <experiment>-<dataset>-<measure>.pdf and .svg, with its numbers (.csv), a table (.tex) and the\n"
-      "script that drew it (.gp: edit it and run gnuplot on it). Pictures of pairs are in pairs/.\n"
+      "Every figure is figures/<experiment>-<dataset>-<name>.pdf and .svg, drawn by scripts/<same>.gp: edit it and "
+      "run\n"
+      "gnuplot on it in that folder. Numbers are in data/ (.csv), tables in tables/ (.tex), pictures of pairs in "
+      "pairs/.\n"
       "Examples:\n  corral report runs/all -o report\n"
       "  corral report runs/b3r runs/time --pairs b3r/bunny-0.25 -o report");
   command->callback([settings, &action] { action = [settings] { return report(*settings); }; });

@@ -29,10 +29,41 @@ std::string file_part(const Measure& measure) {
   return part;
 }
 
+/// Measures that share a figure, from left to right, and its name; any other has a figure of its own.
+const std::vector<std::pair<std::string, std::vector<std::string>>> kTogether = {
+    {"precision-recall", {"precision", "recall"}}, {"registration", {"initial_success_5pr", "success_5pr"}}};
+
+/// The names of the figures over levels, with their measures.
+std::vector<std::pair<std::string, std::vector<const Measure*>>> level_figures() {
+  std::vector<std::pair<std::string, std::vector<const Measure*>>> figures;
+  for (const Measure* drawn : measures_with(kFigure)) {
+    const auto holds = [&](const auto& shared) {
+      return std::find(shared.second.begin(), shared.second.end(), drawn->name) != shared.second.end();
+    };
+    const auto shared = std::find_if(kTogether.begin(), kTogether.end(), holds);
+    if (shared == kTogether.end()) {
+      figures.push_back({file_part(*drawn), {drawn}});
+      continue;
+    }
+    if (std::any_of(figures.begin(), figures.end(), [&](const auto& made) { return made.first == shared->first; }))
+      continue;
+    figures.push_back({shared->first, {}});
+    for (const std::string& name : shared->second) figures.back().second.push_back(&measure(name));
+  }
+  return figures;
+}
+
+std::string file_name(const ExperimentInfo& info, const std::string& figure) {
+  return file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-" + figure;
+}
+
+std::string title_of(const ExperimentInfo& info) {
+  return (info.figure.empty() ? "" : "(" + info.figure + ") ") + info.title + ", " + info.dataset;
+}
+
 Panel empty_panel(const ExperimentInfo& info, const std::string& measure) {
   Panel panel;
-  panel.name = file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-" + measure;
-  panel.title = (info.figure.empty() ? "" : "(" + info.figure + ") ") + info.title + ", " + info.dataset;
+  panel.name = file_name(info, measure);
   panel.x_axis = info.axis;
   for (const StudyLevel& level : info.levels) panel.levels.push_back(level.label);
   return panel;
@@ -114,7 +145,7 @@ void add_distributions(const StudyFolder& run, const ExperimentInfo& info, Study
   curve.note = "Refined poses over the pairs of all levels; a missing pose is a failure.";
   curve.levels.clear();
   for (const double threshold : success_thresholds_pr()) curve.levels.push_back(to_text(threshold));
-  BoxPanel boxes{empty_panel(info, "mean-error").name, curve.title, "mean error (pr), no pose at the top", {}};
+  BoxPanel boxes{file_name(info, "mean-error"), title_of(info), "mean error (pr), no pose at the right", {}};
   for (const std::string& method : methods_of(info, true)) {
     const auto found = records.find(method);
     if (found == records.end()) continue;
@@ -127,7 +158,7 @@ void add_distributions(const StudyFolder& run, const ExperimentInfo& info, Study
   }
   const auto has_pose = [](const Box& box) { return box.without < box.pairs; };
   if (std::none_of(boxes.boxes.begin(), boxes.boxes.end(), has_pose)) return;
-  figures.panels.push_back(curve);
+  figures.panels.push_back({curve.name, title_of(info), {curve}});
   figures.boxes.push_back(boxes);
 }
 
@@ -170,18 +201,22 @@ StudyFigures study_figures(const std::vector<StudyResults>& studies) {
   std::set<std::string> names;
   for (const StudyResults& study : studies)
     for (const ExperimentInfo& info : study.run->experiments) {
-      if (!names.insert(empty_panel(info, "").name).second)
+      if (!names.insert(file_name(info, "")).second)
         throw IoError(study.run->folder, "",
                       "experiment " + info.name + " on " + info.dataset + " is in another study too");
       if (is_of_times(info)) {
         Panel panel = time_panel(*study.run, info);
-        if (keep_drawn(panel)) figures.panels.push_back(panel);
+        if (keep_drawn(panel)) figures.panels.push_back({panel.name, title_of(info), {panel}});
         continue;
       }
       const SummaryRows rows = rows_of(study, info);
-      for (const Measure* measure : measures_with(kFigure)) {
-        Panel panel = level_panel(info, rows, *measure);
-        if (keep_drawn(panel)) figures.panels.push_back(panel);
+      for (const auto& [name, measures] : level_figures()) {
+        PanelFigure figure{file_name(info, name), title_of(info), {}};
+        for (const Measure* measure : measures) {
+          Panel panel = level_panel(info, rows, *measure);
+          if (keep_drawn(panel)) figure.panels.push_back(panel);
+        }
+        if (!figure.panels.empty()) figures.panels.push_back(figure);
       }
       add_distributions(*study.run, info, figures);
     }

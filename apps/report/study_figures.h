@@ -5,21 +5,21 @@
 #include <vector>
 
 #include "apps/report/figure/box_panel.h"
-#include "apps/report/figure/panel.h"
+#include "apps/report/figure/panel_figure.h"
 #include "apps/results/study_results.h"
 
 namespace corral {
 
 /// The figures of some studies.
 struct StudyFigures {
-  std::vector<Panel> panels;
+  std::vector<PanelFigure> panels;
   std::vector<BoxPanel> boxes;
 };
 
 /// For every experiment: a panel over its levels for each measure that is drawn (kFigure) and has any value, with its
-/// intervals; the curve of success over thresholds and the distribution of mean errors, refined; and the time, where tables
-/// of chosen sizes were timed. Means are those of the summary; no average is taken here. Names are
-/// <experiment>-<dataset>-<measure>.
+/// intervals, precision beside recall and the first pose beside the refined one; the curve of success over thresholds and
+/// the distribution of mean errors, refined; and the time, where tables of chosen sizes were timed. Means are those of the
+/// summary; no average is taken here. Names are <experiment>-<dataset>-<figure or measure>.
 ///
 /// Throws    IoError: two runs with one experiment on one data set.
 StudyFigures study_figures(const std::vector<StudyResults>& studies);

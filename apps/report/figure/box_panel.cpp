@@ -5,25 +5,35 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/report/figure/panel.h"
+#include "apps/report/figure/axis.h"
+#include "apps/report/figure/drawing.h"
+#include "apps/report/figure/folders.h"
+#include "apps/report/figure/printed_text.h"
 #include "io/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 namespace {
 
-/// The axis from a power of ten below every quantile to one above; a decade if there is none.
-std::string range_text(const BoxPanel& panel) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
+Decades decades_of(const BoxPanel& panel) {
+  Decades decades;
   for (const Box& box : panel.boxes)
-    for (const auto& quantile : box.quantiles)
-      if (quantile && *quantile > 0) {
-        low = std::min(low, *quantile);
-        high = std::max(high, *quantile);
-      }
-  if (!(high > 0)) low = high = 1;
-  return "bottom = " + to_text(std::pow(10, std::floor(std::log10(low)))) +
-         "\ntop = " + to_text(std::pow(10, std::floor(std::log10(high)) + 1)) + "\nset yrange [bottom:top]\n";
+    for (const auto& quantile : box.quantiles) decades.add(quantile);
+  return decades;
+}
+
+/// The commands that draw a box, the `row`-th of the data, at its place y.
+std::string box_text(std::size_t row, const std::string& color) {
+  const std::string data = "  data skip 1 every ::" + std::to_string(row) + "::" + std::to_string(row) + " using ";
+  const std::string pen = " linewidth 0.8 linecolor rgb '" + color + "'", y = "(y($1))";
+  const auto across = [&](const std::string& quantile, const std::string& half, const std::string& style) {
+    return data + "(at(" + quantile + ")):(y($1)-" + half + "):(0):(2*" + half + ") with vectors nohead" + style +
+           " notitle";
+  };
+  return data + "(at(3)):" + y + ":(at(7)-at(3)):(0) with vectors nohead" + pen + " notitle, \\\n" +
+         across("3", "0.15", pen) + ", \\\n" + across("7", "0.15", pen) + ", \\\n" + data + "(at(5)):" + y +
+         ":(at(4)):(at(6)):(y($1)-0.3):(y($1)+0.3) with boxxyerror fillstyle solid 0.35 border" + pen +
+         " notitle, \\\n" + across("5", "0.3", " linewidth 1.8 linecolor rgb '#000000'");
 }
 
 }  // namespace
@@ -60,32 +70,40 @@ std::string box_csv(const BoxPanel& panel) {
 }
 
 std::string box_script(const BoxPanel& panel) {
-  constexpr double kHeight = 5.4;
-  std::vector<std::string> methods;
+  constexpr double kRow = 13;
+  const auto count = static_cast<double>(panel.boxes.size());
+  std::vector<std::string> methods, names;
   for (const Box& box : panel.boxes) methods.push_back(box.method);
   const auto styles = method_styles(methods);
-  std::string tics, plot = "plot \\\n";
-  // An infinite quantile is drawn at the upper border, a quantile of zero at the lower.
-  const auto column = [](int number) {
-    const std::string text = std::to_string(number);
-    return ":(valid(" + text + ")?(column(" + text + ")<bottom?bottom:column(" + text + ")):top)";
-  };
+  std::vector<double> rows;
+  std::string plot;
   for (std::size_t i = 0; i < panel.boxes.size(); ++i) {
     const MethodStyle& style = styles.at(panel.boxes[i].method);
-    const std::string rows = "  data skip 1 every ::" + std::to_string(i) + "::" + std::to_string(i) + " using 1";
-    tics += (i > 0 ? ", " : "") + gnuplot_text(style.label) + " " + std::to_string(i + 1);
-    plot += rows + column(4) + column(3) + column(7) + column(6) +
-            " with candlesticks whiskerbars 0.5 fillstyle solid 0.35 border linewidth 0.8 linecolor rgb '" +
-            style.color + "' notitle, \\\n" + rows + column(5) + column(5) + column(5) + column(5) +
-            " with candlesticks linewidth 1.8 linecolor rgb '#000000' notitle" +
-            (i + 1 < panel.boxes.size() ? ", \\\n" : "\n");
+    names.push_back(shortened(style.label, kColumnWidth / 3));
+    rows.push_back(count - static_cast<double>(i));
+    plot += box_text(i, style.color) + (i + 1 < panel.boxes.size() ? ", \\\n" : "\n");
   }
-  return script_head(kHeight) + "set title " + gnuplot_text(panel.title) + " offset 0,-0.6\nset ylabel " +
-         gnuplot_text(panel.y_axis) +
-         " offset 1.2,0\nset xrange [0.4:" + to_text(static_cast<double>(panel.boxes.size()) + 0.6) + "]\nset xtics (" +
-         tics + ")" + (panel.boxes.size() > 9 ? " rotate by 40 right" : "") + "\nset logscale y\nset format y '%g'\n" +
-         range_text(panel) + "set boxwidth 0.55\ndata = '" + panel.name + ".csv'\n" +
-         script_tail(panel.name, plot, kHeight);
+  const Decades decades = decades_of(panel);
+  const double left = kGap + width_beside_axis(names);
+  const double right = kColumnWidth - kGap - printed_width(decades.labels().back()) / 2;
+  std::vector<double> places;
+  for (std::size_t i = 0; i < decades.numbers().size(); ++i)
+    places.push_back(left +
+                     (right - left) * static_cast<double>(i) / static_cast<double>(decades.numbers().size() - 1));
+  const AxisLabels labels = fit_labels(decades.labels(), places);
+  const std::vector<std::string> title = wrapped(panel.title, kColumnWidth - 2 * kGap);
+  const std::vector<std::string> axis = wrapped(panel.axis, right - left);
+  const double top = kGap + static_cast<double>(title.size()) * kLine, bottom = top + kRow * count;
+  Drawing page(kColumnWidth, bottom + labels.depth + static_cast<double>(axis.size()) * kLine + kGap / 2);
+  page.paragraph(kColumnWidth / 2, kGap / 2, title);
+  page.paragraph((left + right) / 2, bottom + labels.depth, axis);
+  return figure_script(panel.name, page,
+                       {page.margins(left, right, top, bottom) + logarithmic_axis("x", decades, labels.texts) +
+                        "set yrange [0.4:" + to_text(count + 0.6) + "]\nset ytics " + tics_text(names, rows) +
+                        "\nset grid noytics xtics\n" + "at(k) = valid(k) ? (column(k) < " + to_text(decades.low()) +
+                        " ? " + to_text(decades.low()) + " : column(k)) : " + to_text(decades.high()) +
+                        "  # no value: the right border\ny(x) = " + to_text(count + 1) + " - x\ndata = '" +
+                        std::string(kFromScripts) + kData + panel.name + ".csv'\nplot \\\n" + plot});
 }
 
 }  // namespace corral

@@ -18,16 +18,17 @@ struct Box {
 /// The box of some values, absent ones counted as worse than any. Quantiles are interpolated linearly.
 Box box_of(const std::string& method, const std::vector<std::optional<double>>& values);
 
-/// Boxes side by side on a logarithmic axis.
+/// Boxes below each other on a logarithmic axis.
 struct BoxPanel {
   std::string name;  ///< of its files, as of a Panel
-  std::string title, y_axis;
+  std::string title, axis;
   std::vector<Box> boxes;
 };
 
 /// x,method,q05,q25,q50,q75,q95,pairs,without
 std::string box_csv(const BoxPanel& panel);
-/// A script for gnuplot as that of panel_script; an absent quantile is drawn at the upper border.
+/// A script for gnuplot as that of panel_script, in the width of a column: from quantile to quantile the whiskers, the box and
+/// its median. An absent quantile is drawn at the right border.
 std::string box_script(const BoxPanel& panel);
 
 }  // namespace corral

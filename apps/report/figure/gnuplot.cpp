@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "apps/report/figure/folders.h"
 #include "io/file.h"
 
 extern char** environ;
@@ -41,22 +42,22 @@ void date_1970(const std::string& path) {
 
 }  // namespace
 
-void run_gnuplot(const std::string& folder, const std::string& name) {
+void run_gnuplot(const std::string& report, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(report) / kScripts;
   std::string program = "gnuplot", plain = "-d", script = name + ".gp";  // -d: without the user's own settings
   char* arguments[] = {program.data(), plain.data(), script.data(), nullptr};
-  const Actions actions(folder);
+  const Actions actions(folder.string());
   pid_t child = 0;
   if (::posix_spawnp(&child, program.c_str(), &actions.value, nullptr, arguments, environ) != 0)
     throw GnuplotError(
         "gnuplot cannot be run: install it (Debian: gnuplot-nox), then run this again; data, tables and scripts are "
         "in " +
-        folder);
+        report);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw GnuplotError("gnuplot cannot draw " + folder + "/" + script + ": run it there to see why");
-  const std::filesystem::path base = std::filesystem::path(folder) / name;
-  date_1970(base.string() + ".pdf");
+    throw GnuplotError("gnuplot cannot draw " + (folder / script).string() + ": run it there to see why");
+  date_1970((std::filesystem::path(report) / kFigures / (name + ".pdf")).string());
 }
 
 }  // namespace corral

@@ -31,10 +31,10 @@ enum class PanelAxes {
   Logarithmic  ///< the labels are numbers; both axes are logarithmic
 };
 
-/// A figure of curves, one for each grouper, and the table behind it.
+/// Curves, one for each grouper, and the table behind them.
 struct Panel {
   std::string name;  ///< of its files, without ending: letters, digits and . _ + - only
-  std::string title, x_axis, y_axis;
+  std::string x_axis, y_axis;
   PanelAxes axes = PanelAxes::Levels;
   bool smaller_is_better = false;
   std::vector<std::string> levels;
@@ -43,24 +43,17 @@ struct Panel {
   std::string note;  ///< a note for readers of the table
 };
 
+/// The position of a level on the axis.
+double place_of(const Panel& panel, std::size_t level);
+
 /// level,x, then <method>,<method>_low,<method>_high of each series; empty where a value is absent. A level without any
 /// value has no row, so that lines continue across it.
 std::string panel_csv(const Panel& panel);
-
-/// A script for gnuplot that reads `<name>.csv` beside it and makes `<name>.pdf` and `<name>.svg`, 8 cm wide.
-std::string panel_script(const Panel& panel);
 
 /// The panel as a LaTeX table that needs no package: a row for each grouper, the best of every level in bold.
 std::string panel_latex(const Panel& panel);
 
 /// Text that LaTeX prints verbatim; line breaks become spaces.
 std::string latex_text(const std::string& text);
-
-/// The beginning and the end of every script: both files from what `plot` draws, `height_cm` high and 8 cm wide.
-std::string script_head(double height_cm);
-std::string script_tail(const std::string& name, const std::string& plot, double height_cm);
-
-/// Text as a gnuplot string without special characters.
-std::string gnuplot_text(const std::string& text);
 
 }  // namespace corral

@@ -19,8 +19,8 @@ struct RankDiagram {
 /// method,average_rank in the order of ranks, below a comment line with the critical difference.
 std::string rank_csv(const RankDiagram& diagram);
 
-/// A self-contained script for gnuplot: the best on the left, a bar over every clique. Throws InvalidInput for fewer than 2
-/// methods, or ranks or cliques that do not fit them.
+/// A script for gnuplot that needs no data, in the width of a column or, for many or long names, of a page: the best on the
+/// left, a bar over every clique. Throws InvalidInput for fewer than 2 methods, or ranks or cliques that do not fit them.
 std::string rank_script(const RankDiagram& diagram);
 
 }  // namespace corral

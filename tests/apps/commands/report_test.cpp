@@ -73,8 +73,9 @@ void put_run(const Workplace& place, const std::string& run = "run", const std::
 StudyFigures figures_of(const std::vector<StudyFolder>& runs) { return study_figures(results_of(runs)); }
 
 const Panel& panel_named(const StudyFigures& figures, const std::string& name) {
-  for (const Panel& panel : figures.panels)
-    if (panel.name == name) return panel;
+  for (const PanelFigure& figure : figures.panels)
+    for (const Panel& panel : figure.panels)
+      if (panel.name == name) return panel;
   throw std::out_of_range(name);
 }
 
@@ -83,9 +84,15 @@ TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   put_run(place);
   const StudyFigures figures = figures_of({read_study(place / "run")});
   std::vector<std::string> names;
-  for (const Panel& panel : figures.panels) names.push_back(panel.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("noise-b3r-precision", "noise-b3r-recall", "noise-b3r-f1",
-                                            "noise-b3r-success", "noise-b3r-initial-success",
+  for (const PanelFigure& figure : figures.panels) {
+    names.push_back(figure.name + ":");
+    for (const Panel& panel : figure.panels) names.push_back(panel.name);
+    EXPECT_EQ(figure.title, "(a) Noise, b3r");
+  }
+  EXPECT_THAT(names, ::testing::ElementsAre("noise-b3r-precision-recall:", "noise-b3r-precision", "noise-b3r-recall",
+                                            "noise-b3r-f1:", "noise-b3r-f1",
+                                            "noise-b3r-registration:", "noise-b3r-initial-success", "noise-b3r-success",
+                                            "noise-b3r-success-curve:",
                                             "noise-b3r-success-curve"));  // nobody tried the dense pose
   const Panel& precision = panel_named(figures, "noise-b3r-precision");
   ASSERT_EQ(precision.series.size(), 2U);  // without the bounds
@@ -93,7 +100,6 @@ TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   EXPECT_GT(precision.series[0].values[0].high, 0.5);
   EXPECT_EQ(precision.series[1].values[0].value, 0.75);
   EXPECT_FALSE(precision.series[1].values[1].value);  // a gap: neither 0 nor that of another level
-  EXPECT_EQ(precision.title, "(a) Noise, b3r");
   EXPECT_EQ(precision.y_axis, "precision");
   EXPECT_EQ(precision.level_counts[0].cells, (std::vector<std::string>{"4", "1"}));
   EXPECT_EQ(precision.level_counts[1].cells, (std::vector<std::string>{"1", "0"}));
@@ -133,11 +139,11 @@ TEST(StudyFigures, TimesAreMediansOnLogarithmicAxes) {
   }
   const StudyFigures figures = figures_of({run});
   ASSERT_EQ(figures.panels.size(), 1U);
-  EXPECT_EQ(figures.panels[0].name, "noise-b3r-time");
-  EXPECT_EQ(figures.panels[0].axes, PanelAxes::Logarithmic);
-  EXPECT_EQ(figures.panels[0].series[1].values[0].value, 2);
-  EXPECT_EQ(figures.panels[0].series[1].values[0].low, 1.5);
-  EXPECT_FALSE(figures.panels[0].series[0].values[0].value);
+  const Panel& panel = panel_named(figures, "noise-b3r-time");
+  EXPECT_EQ(panel.axes, PanelAxes::Logarithmic);
+  EXPECT_EQ(panel.series[1].values[0].value, 2);
+  EXPECT_EQ(panel.series[1].values[0].low, 1.5);
+  EXPECT_FALSE(panel.series[0].values[0].value);
 }
 
 TEST(StudyFigures, RefuseTheSameExperimentTwice) {
@@ -200,9 +206,9 @@ TEST(Report, WithoutGnuplotEverythingElseIsThere) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("gnuplot cannot be run"), HasSubstr("out")));
   EXPECT_EQ(testing::lines_in(outcome.err), 1U);
-  for (const char* ending : {".csv", ".gp", ".tex"})
-    EXPECT_TRUE(std::filesystem::exists(place / ("out/noise-b3r-precision" + std::string(ending)))) << ending;
-  EXPECT_TRUE(std::filesystem::exists(place / "out/noise-b3r-mean-error.csv"));
+  for (const char* file : {"data/noise-b3r-precision.csv", "tables/noise-b3r-precision.tex",
+                           "scripts/noise-b3r-precision-recall.gp", "data/noise-b3r-mean-error.csv"})
+    EXPECT_TRUE(std::filesystem::exists(place / ("out/" + std::string(file)))) << file;
 }
 
 TEST(Report, SameRunSameBytes) {
@@ -215,13 +221,14 @@ TEST(Report, SameRunSameBytes) {
     EXPECT_EQ(outcome.err, "the report is " + std::string(out) + "/index.html\n");
   }
   for (const std::string name :
-       {"noise-b3r-precision", "noise-b3r-recall", "noise-b3r-success-curve", "noise-b3r-mean-error"})
+       {"noise-b3r-precision-recall", "noise-b3r-registration", "noise-b3r-success-curve", "noise-b3r-mean-error"})
     for (const char* ending : {".pdf", ".svg"}) {
-      EXPECT_EQ(place.text("one/" + name + ending), place.text("two/" + name + ending)) << name << ending;
-      EXPECT_GT(place.text("one/" + name + ending).size(), 2000U);
+      const std::string file = "/figures/" + name + ending;
+      EXPECT_EQ(place.text("one" + file), place.text("two" + file)) << file;
+      EXPECT_GT(place.text("one" + file).size(), 2000U);
     }
-  EXPECT_THAT(place.text("one/noise-b3r-precision.pdf"), HasSubstr("/CreationDate (D:19700101000000"));
-  EXPECT_THAT(place.text("one/noise-b3r-precision.svg"), AllOf(HasSubstr("GC"), HasSubstr("noise (pr)")));
+  EXPECT_THAT(place.text("one/figures/noise-b3r-f1.pdf"), HasSubstr("/CreationDate (D:19700101000000"));
+  EXPECT_THAT(place.text("one/figures/noise-b3r-f1.svg"), AllOf(HasSubstr("GC"), HasSubstr("noise (pr)")));
 }
 
 /// A pair with files as corral evaluate writes them; without a mesh if it is told so.
@@ -260,7 +267,7 @@ TEST(Report, AMissingMeshCostsOnlyItsPictures) {
   const Outcome outcome = place.corral("report run -o out");
   EXPECT_EQ(outcome.status, has_gnuplot() ? 4 : 1);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("no pictures of b3r/ball"), HasSubstr("gone.ply")));
-  EXPECT_TRUE(std::filesystem::exists(place / "out/noise-b3r-precision.tex"));
+  EXPECT_TRUE(std::filesystem::exists(place / "out/tables/noise-b3r-precision.tex"));
 }
 
 TEST(Draw, MatchesAndPoses) {

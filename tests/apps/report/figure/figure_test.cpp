@@ -2,21 +2,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <set>
 
 #include "apps/report/figure/box_panel.h"
+#include "apps/report/figure/drawing.h"
 #include "apps/report/figure/gnuplot.h"
-#include "apps/report/figure/panel.h"
+#include "apps/report/figure/panel_figure.h"
 #include "apps/report/figure/rank_diagram.h"
 #include "grouping/registry.h"
 #include "io/csv_file.h"
 #include "kernel/error.h"
-#include "tests/io/scratch.h"
+#include "tests/apps/report/figure/report_folder.h"
 
 namespace corral {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -24,7 +27,6 @@ using ::testing::Not;
 Panel small_panel() {
   Panel panel;
   panel.name = "noise-b3r-recall";
-  panel.title = "(a) Noise, it's";
   panel.x_axis = "noise (pr)";
   panel.y_axis = "recall";
   panel.levels = {"[0,1)", "[1,2)", "[2,3]"};
@@ -74,25 +76,39 @@ TEST(Panel, AbsentValuesAreEmptyCells) {
   EXPECT_EQ(parse_csv("panel", panel_csv(curve)).rows[2][1], "7");
 }
 
+PanelFigure figure_of(const Panel& panel) { return {panel.name, "(a) Noise, it's", {panel}}; }
+
 TEST(Panel, TheScriptReadsItsOwnFileAndQuotesWhatItIsTold) {
-  const std::string script = panel_script(small_panel());
-  EXPECT_THAT(script, HasSubstr("data = 'noise-b3r-recall.csv'"));
-  EXPECT_THAT(script, HasSubstr("set output 'noise-b3r-recall.pdf'"));
-  EXPECT_THAT(script, HasSubstr("set output 'noise-b3r-recall.svg'"));
-  EXPECT_THAT(script, HasSubstr("set title '(a) Noise, it''s'"));
-  EXPECT_THAT(script, HasSubstr("set xtics ('[0,1)' 1, '[1,2)' 2, '[2,3]' 3)"));
+  const std::string script = panel_script(figure_of(small_panel()));
+  EXPECT_THAT(script, HasSubstr("data = '../data/noise-b3r-recall.csv'"));
+  EXPECT_THAT(script, HasSubstr("set output '../figures/noise-b3r-recall.'.ending"));
+  EXPECT_THAT(script, HasSubstr("set label '(a) Noise, it''s' at "));
+  EXPECT_THAT(script, HasSubstr("set xtics norotate ('[0,1)' 1, '[1,2)' 2, '[2,3]' 3)"));
   EXPECT_THAT(script, HasSubstr("(valid(6)?column(6):NaN) with linespoints"));  // my_own, third of its columns is 8
-  EXPECT_THAT(script, HasSubstr("title 'my_own'"));
-  EXPECT_THAT(script, HasSubstr("linecolor rgb '" + method_styles({"gc"}).at("gc").color + "' title 'GC'"));
+  EXPECT_THAT(script, HasSubstr("set label 'my_own' at "));
+  EXPECT_THAT(script, HasSubstr(pen_of(method_styles({"gc"}).at("gc"))));
   EXPECT_THAT(script, HasSubstr("with vectors nohead"));
   EXPECT_THAT(script, Not(HasSubstr("logscale")));
   Panel plain = small_panel();
   plain.axes = PanelAxes::Logarithmic;
   plain.levels = {"250", "500", "1000"};
   plain.series[0].values[0] = {1.0, {}, {}};
-  EXPECT_THAT(panel_script(plain), HasSubstr("set logscale xy"));
-  EXPECT_THAT(panel_script(plain), Not(HasSubstr("with vectors")));  // no interval is given
+  EXPECT_THAT(panel_script(figure_of(plain)), AllOf(HasSubstr("set logscale x\n"), HasSubstr("set logscale y\n")));
+  EXPECT_THAT(panel_script(figure_of(plain)), Not(HasSubstr("with vectors")));  // no interval is given
   EXPECT_EQ(gnuplot_text("`ls`\n'$x'"), "'`ls` ''$x'''");
+  EXPECT_EQ(tics_text({"50 %", ""}, {1, 2.5}), "('50 %%' 1, '' 2.5)");  // labels of tics are formats
+}
+
+TEST(Panel, OneIsAColumnWideAndTwoArePageWideUnderOneLegend) {
+  const std::string one = panel_script(figure_of(small_panel()));
+  EXPECT_THAT(one, HasSubstr("size 8.500cm,"));
+  PanelFigure figure = figure_of(small_panel());
+  figure.panels.push_back(small_panel());
+  figure.panels[1].name = "other";
+  const std::string two = panel_script(figure);
+  EXPECT_THAT(two, AllOf(HasSubstr("size 17.000cm,"), HasSubstr("'../data/other.csv'")));
+  const std::string entry = "set label 'my_own' at ";
+  EXPECT_EQ(two.find(entry), two.rfind(entry));
 }
 
 TEST(Panel, TheTableIsLatex) {
@@ -129,18 +145,36 @@ TEST(BoxPanel, QuantilesCountAbsentValuesAsTheWorst) {
   EXPECT_EQ(box_csv(panel),
             "x,method,q05,q25,q50,q75,q95,pairs,without\n1,gc,1.3,2.5,4,,,3,1\n"
             "2,o'dd,0.25,0.25,0.25,0.25,0.25,1,0\n");
-  EXPECT_THAT(box_script(panel), HasSubstr("bottom = 0.1\ntop = 10\n"));
-  EXPECT_THAT(box_script(panel), HasSubstr("set xtics ('GC' 1, 'o''dd' 2)"));
+  EXPECT_THAT(box_script(panel), HasSubstr("set xrange [0.1:10]"));
+  EXPECT_THAT(box_script(panel), HasSubstr("set ytics ('GC' 2, 'o''dd' 1)"));  // the first on top
 }
 
 TEST(RankDiagram, DrawsMethodsAndCliquesWhereTheirRanksAre) {
   const RankDiagram diagram{"ranks", "F1", {"gc", "ss", "ransac"}, {2.25, 2.5, 1.25}, 0.75, {{0, 1}}};
   EXPECT_EQ(rank_csv(diagram), "# critical difference 0.75\nmethod,average_rank\nransac,1.25\ngc,2.25\nss,2.5\n");
   const std::string script = rank_script(diagram);
-  EXPECT_THAT(script, HasSubstr("set arrow from 2.19,-0.45 to 2.56,-0.45 nohead linewidth 3"));  // the clique
-  EXPECT_THAT(script, HasSubstr("set arrow from 1,1.5 to 1.75,1.5"));                            // the difference
-  EXPECT_THAT(script, HasSubstr("set label 'RANSAC 1.25' at 0.6"));                              // best on the left
-  EXPECT_THAT(script, HasSubstr("set label 'SS 2.50' at 3.4"));
+  const auto place_of = [&](const std::string& text) {
+    const std::size_t at = script.find(" at screen ", script.find("'" + text + "'"));
+    return std::stod(script.substr(at + 11));
+  };
+  const double one = place_of("1"), unit = place_of("2") - one;
+  EXPECT_NEAR(place_of("3"), one + 2 * unit, 1e-4);
+  // The lines of the groupers begin at their ranks.
+  std::vector<double> starts;
+  const std::string arrow = "set arrow from screen ", color = method_styles({"gc"}).at("gc").color;
+  for (std::size_t at = script.find(arrow); at != std::string::npos; at = script.find(arrow, at + 1))
+    if (script.substr(at, script.find('\n', at) - at).find(color) != std::string::npos)
+      starts.push_back(std::stod(script.substr(at + arrow.size())));
+  ASSERT_EQ(starts.size(), 2U);
+  EXPECT_NEAR(starts[0], one + 1.25 * unit, 1e-4);
+  EXPECT_LT(place_of("RANSAC 1.25"), one);  // the best on the left
+  EXPECT_LT(place_of("GC 2.25"), one);
+  EXPECT_GT(place_of("SS 2.50"), one + 2 * unit);
+  EXPECT_THAT(script, HasSubstr("linewidth 3"));  // the clique
+  EXPECT_THAT(script, HasSubstr("size 8.500cm,"));
+  std::vector<std::string> many;
+  for (int i = 0; i < 20; ++i) many.push_back("grouper" + std::to_string(i));
+  EXPECT_THAT(rank_script({"ranks", "", many, std::vector<double>(20, 10.5), 1, {}}), HasSubstr("size 17.000cm,"));
   EXPECT_THROW(rank_script({"ranks", "", {"gc"}, {1}, 1, {}}), InvalidInput);
   EXPECT_THROW(rank_script({"ranks", "", {"gc", "ss"}, {1}, 1, {}}), InvalidInput);
   EXPECT_THROW(rank_script({"ranks", "", {"gc", "ss"}, {1, 2}, 1, {{0, 2}}}), InvalidInput);
@@ -148,43 +182,34 @@ TEST(RankDiagram, DrawsMethodsAndCliquesWhereTheirRanksAre) {
 
 TEST(Gnuplot, DrawsEveryKindOfScript) {
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
-  const testing::ScratchFolder folder;
-  const auto draw = [&](const std::string& name, const std::string& csv, const std::string& script) {
-    testing::put_text(folder / (name + ".csv"), csv);
-    testing::put_text(folder / (name + ".gp"), script);
-    run_gnuplot(folder.path(), name);
-    return testing::text_of(folder / (name + ".svg"));
-  };
+  const testing::ReportFolder folder;
   const RankDiagram ranks{"ranks", "F1", {"gc", "ss", "ransac"}, {2.25, 2.5, 1.25}, 0.75, {{0, 1}}};
-  EXPECT_THAT(draw("ranks", rank_csv(ranks), rank_script(ranks)), HasSubstr("RANSAC 1.25"));
+  EXPECT_THAT(folder.svg_of("ranks", rank_csv(ranks), rank_script(ranks)), HasSubstr("RANSAC 1.25"));
   Panel panel = small_panel();
   panel.name = "odd";
   panel.series[0].method = "a 'b' \"c\", `d`";
   for (const PanelAxes axes : {PanelAxes::Levels, PanelAxes::Curve, PanelAxes::Logarithmic}) {
     panel.axes = axes;
     if (axes != PanelAxes::Levels) panel.levels = {"1", "20", "300"};
-    EXPECT_THAT(draw("odd", panel_csv(panel), panel_script(panel)), HasSubstr("`d`"));
+    EXPECT_THAT(folder.svg_of("odd", panel_csv(panel), panel_script(figure_of(panel))), HasSubstr("`d`"));
   }
   const BoxPanel boxes{
       "boxes", "Noise", "RMSE", {box_of("gc", {4.0, 1.0, std::nullopt}), box_of("ss", {std::nullopt})}};
-  EXPECT_THAT(draw("boxes", box_csv(boxes), box_script(boxes)), HasSubstr("GC"));
-  testing::put_text(folder / "bad.gp", "plot sin(\n");
+  EXPECT_THAT(folder.svg_of("boxes", box_csv(boxes), box_script(boxes)), HasSubstr("GC"));
+  testing::put_text(folder / "scripts/bad.gp", "plot sin(\n");
   EXPECT_THROW(run_gnuplot(folder.path(), "bad"), GnuplotError);
 }
 
 // The lines between the points of a curve: a gap where a value is absent, none where all are there.
 TEST(Gnuplot, AnAbsentValueBreaksTheLine) {
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
-  const testing::ScratchFolder folder;
+  const testing::ReportFolder folder;
   const auto moves = [&](const std::vector<PanelValue>& values) {
     Panel panel;
     panel.name = "gaps";
     panel.levels = {"1", "2", "3", "4", "5"};
     panel.series = {{"gc", values}, {"ss", std::vector<PanelValue>(5, {0.25, {}, {}})}};
-    testing::put_text(folder / "gaps.csv", panel_csv(panel));
-    testing::put_text(folder / "gaps.gp", panel_script(panel));
-    run_gnuplot(folder.path(), "gaps");
-    const std::string svg = testing::text_of(folder / "gaps.svg");
+    const std::string svg = folder.svg_of("gaps", panel_csv(panel), panel_script(figure_of(panel)));
     return std::count(svg.begin(), svg.end(), 'M');
   };
   const PanelValue half{0.5, {}, {}};
