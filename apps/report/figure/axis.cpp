@@ -11,8 +11,7 @@
 namespace corral {
 namespace {
 
-constexpr double kTicks = 8;         // from the axis to its labels
-constexpr double kMostUpright = 90;  // of an upright label
+constexpr double kTicks = 8;  // from the axis to its labels
 
 /// Whether each label is kept: the last, and towards the first every one that has so much room.
 std::vector<bool> kept(const std::vector<double>& places, double room) {
@@ -38,8 +37,8 @@ AxisLabels fit_labels(const std::vector<std::string>& labels, const std::vector<
   const bool fit = std::all_of(keep.begin(), keep.end(), [](bool is_kept) { return is_kept; });
   if (!fit && !std::all_of(labels.begin(), labels.end(), is_number)) {
     fitted.are_upright = true;
-    for (std::string& text : fitted.texts) text = shortened(text, kMostUpright);
-    fitted.depth = kTicks + std::min(kMostUpright, widest);
+    for (std::string& text : fitted.texts) text = shortened(text, kMostOfName);
+    fitted.depth = kTicks + std::min(kMostOfName, widest);
     keep = kept(places, kLine);
   }
   for (std::size_t i = 0; i < labels.size(); ++i)

@@ -79,7 +79,7 @@ std::string box_script(const BoxPanel& panel) {
   std::string plot;
   for (std::size_t i = 0; i < panel.boxes.size(); ++i) {
     const MethodStyle& style = styles.at(panel.boxes[i].method);
-    names.push_back(shortened(style.label, kColumnWidth / 3));
+    names.push_back(shortened(style.label, kMostOfName));
     rows.push_back(count - static_cast<double>(i));
     plot += box_text(i, style.color) + (i + 1 < panel.boxes.size() ? ", \\\n" : "\n");
   }

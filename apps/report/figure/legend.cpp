@@ -16,7 +16,7 @@ Legend::Legend(const std::vector<std::string>& methods, double width) {
   const auto styles = method_styles(methods);
   for (const std::string& method : methods) {
     entries_.push_back(styles.at(method));
-    entries_.back().label = shortened(entries_.back().label, width - kSample - 3 * kGap);
+    entries_.back().label = shortened(entries_.back().label, kMostOfName);
   }
   for (std::size_t columns = 2; columns <= entries_.size(); ++columns)
     if (width_of(columns) <= width - 2 * kGap) columns_ = columns;

@@ -8,9 +8,10 @@ namespace corral {
 
 // Lengths in figures are in points, 1/72 inch.
 constexpr double kColumnWidth = 8.5 * 72 / 2.54, kPageWidth = 17 * 72 / 2.54;
-constexpr double kTextSize = 8;  ///< of all text
-constexpr double kLine = 10;     ///< from one line of text to the next
-constexpr double kGap = 5;       ///< between two words that do not belong together
+constexpr double kTextSize = 8;                   ///< of all text
+constexpr double kLine = 10;                      ///< from one line of text to the next
+constexpr double kGap = 5;                        ///< between two words that do not belong together
+constexpr double kMostOfName = kColumnWidth / 3;  ///< the width of the name of a grouper or level
 
 /// The font of figures, or what fontconfig puts in its place: Liberation Sans has the same widths.
 constexpr const char* kFontName = "Arial";

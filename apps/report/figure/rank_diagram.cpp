@@ -51,7 +51,7 @@ std::vector<std::string> names_of(const RankDiagram& diagram, const std::vector<
   std::vector<std::string> names;
   for (const int place : order) {
     const auto method = static_cast<std::size_t>(place);
-    names.push_back(shortened(styles.at(diagram.methods[method]).label, kColumnWidth / 3) + " " +
+    names.push_back(shortened(styles.at(diagram.methods[method]).label, kMostOfName) + " " +
                     fixed(diagram.average_ranks[method], 2));
   }
   return names;

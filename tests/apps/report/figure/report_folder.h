@@ -27,7 +27,7 @@ struct ReportFolder : ScratchFolder {
   }
 };
 
-/// A word of a PDF and its box in points from the upper left corner; its text as HTML.
+/// A word of a PDF and its box in points from the upper left corner.
 struct PrintedWord {
   std::string text;
   double left, top, right, bottom;
@@ -45,7 +45,7 @@ inline PrintedPage read_page(const std::string& pdf, const std::string& scratch)
   PrintedPage page;
   if (std::system(("pdftotext -bbox '" + pdf + "' '" + scratch + "'").c_str()) != 0) return page;
   static const std::regex pattern(
-      R"re(<(?:page width="([^"]*)" height="([^"]*)"|word xMin="([^"]*)" yMin="([^"]*)" xMax="([^"]*)" yMax="([^"]*)">(.*)</word)re");
+      R"re(<(?:page width="([^"]*)" height="([^"]*)"|word xMin="([^"]*)" yMin="([^"]*)" xMax="([^"]*)" yMax="([^"]*)">(.*)</word))re");
   const std::string html = text_of(scratch);
   for (std::sregex_iterator found(html.begin(), html.end(), pattern), end; found != end; ++found) {
     const auto number = [&](std::size_t group) { return std::stod((*found)[group]); };
@@ -54,6 +54,13 @@ inline PrintedPage read_page(const std::string& pdf, const std::string& scratch)
     else
       page.words.push_back({(*found)[7], number(3), number(4), number(5), number(6)});
   }
+  for (PrintedWord& word : page.words)
+    for (const auto& [from, to] : {std::pair<const char*, const char*>{"&lt;", "<"},
+                                   {"&gt;", ">"},
+                                   {"&quot;", "\""},
+                                   {"&apos;", "'"},
+                                   {"&amp;", "&"}})
+      word.text = replaced(word.text, from, to);
   return page;
 }
 
