@@ -38,7 +38,7 @@ AxisLabels fit_labels(const std::vector<std::string>& labels, const std::vector<
   if (!fit && !std::all_of(labels.begin(), labels.end(), is_number)) {
     fitted.are_upright = true;
     for (std::string& text : fitted.texts) text = shortened(text, kMostOfName);
-    fitted.depth = kTicks + std::min(kMostOfName, widest);
+    fitted.depth = kTicks + std::min(kMostOfName, widest) + kGap / 2;
     keep = kept(places, kLine);
   }
   for (std::size_t i = 0; i < labels.size(); ++i)

@@ -94,7 +94,7 @@ std::string box_script(const BoxPanel& panel) {
   const std::vector<std::string> title = wrapped(panel.title, kColumnWidth - 2 * kGap);
   const std::vector<std::string> axis = wrapped(panel.axis, right - left);
   const double top = kGap + static_cast<double>(title.size()) * kLine, bottom = top + kRow * count;
-  Drawing page(kColumnWidth, bottom + labels.depth + static_cast<double>(axis.size()) * kLine + kGap / 2);
+  Drawing page(kColumnWidth, bottom + labels.depth + static_cast<double>(axis.size()) * kLine + kGap);
   page.paragraph(kColumnWidth / 2, kGap / 2, title);
   page.paragraph((left + right) / 2, bottom + labels.depth, axis);
   return figure_script(panel.name, page,

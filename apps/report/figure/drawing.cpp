@@ -88,10 +88,9 @@ std::string figure_script(const std::string& name, const Drawing& drawing, const
       "do for [ending in 'pdf svg'] {\n  if (ending eq 'pdf') {\n    set terminal pdfcairo " +
       font + to_text(kTextSize) + "' fontscale 0.75 linewidth 1 size " +  // 0.75: its points are those of 96 to an inch
       fixed(drawing.width() / 72 * 2.54, 3) + "cm," + fixed(drawing.height() / 72 * 2.54, 3) +
-      "cm\n  } else {\n    set terminal svg " + font + to_text(kPixels * kTextSize) + "' linewidth " +
-      to_text(kPixels) + " size " + fixed(kPixels * drawing.width(), 0) + "," + fixed(kPixels * drawing.height(), 0) +
-      "\n  }\n  set output '" + kFromScripts + kFigures + name + ".'.ending\n  set multiplot\n" +
-      indented(drawing.commands());
+      "cm\n  } else {\n    set terminal svg " + font + to_text(kPixels * kTextSize) + "' size " +
+      fixed(kPixels * drawing.width(), 0) + "," + fixed(kPixels * drawing.height(), 0) + "\n  }\n  set output '" +
+      kFromScripts + kFigures + name + ".'.ending\n  set multiplot\n" + indented(drawing.commands());
   for (const std::string& plot : plots) text += indented(plot) + "  unset label\n  unset arrow\n";
   return text + "  unset multiplot\n}\nset output\n";
 }

@@ -143,7 +143,7 @@ std::string panel_script(const PanelFigure& figure) {
   const double top = legend_top + legend.height() + kGap, bottom = top + plot_height;
   std::size_t axis_lines = 0;
   for (const Frame& frame : frames) axis_lines = std::max(axis_lines, frame.axis.size());
-  Drawing page(width, bottom + depth + static_cast<double>(axis_lines) * kLine + kGap / 2);
+  Drawing page(width, bottom + depth + static_cast<double>(axis_lines) * kLine + kGap);
   page.paragraph(width / 2, kGap / 2, title);
   legend.draw(page, legend_top);
   std::vector<std::string> plots;
