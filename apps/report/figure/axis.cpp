@@ -68,7 +68,7 @@ std::vector<std::string> Decades::labels() const {
 
 std::string logarithmic_axis(const std::string& axis, const Decades& decades, const std::vector<std::string>& labels) {
   return "set logscale " + axis + "\nset " + axis + "range [" + to_text(decades.low()) + ":" + to_text(decades.high()) +
-         "]\nset " + axis + "tics " + tics_text(labels, decades.numbers()) + "\n";
+         "]\nset " + axis + "tics " + (axis == "x" ? kNearAxis : "") + tics_text(labels, decades.numbers()) + "\n";
 }
 
 double width_beside_axis(const std::vector<std::string>& labels) { return kTicks + widest_of(labels); }

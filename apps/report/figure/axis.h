@@ -31,6 +31,9 @@ class Decades {
   std::optional<double> least_, largest_;
 };
 
+/// For `set xtics`: gnuplot leaves a line between an axis and its labels, on a screen more than on paper.
+constexpr const char* kNearAxis = "offset 0,0.3 ";
+
 /// The commands for a logarithmic axis, "x" or "y", with labels at the powers or others of their number.
 std::string logarithmic_axis(const std::string& axis, const Decades& decades, const std::vector<std::string>& labels);
 

@@ -95,7 +95,7 @@ std::string axes_text(const Panel& panel, const Frame& frame) {
   else
     text = "set yrange [0:1.03]\nset ytics 0.2\nset format y '%.1f'\n";
   return text + "set xrange [" + to_text(range.low) + ":" + to_text(range.high) + "]\nset xtics " +
-         (frame.labels.are_upright ? "rotate by 90 right " : "norotate ") +
+         (frame.labels.are_upright ? "rotate by 90 right " : "norotate ") + kNearAxis +
          tics_text(frame.labels.texts, places_of(panel)) + "\n";
 }
 

@@ -83,7 +83,7 @@ TEST(Panel, TheScriptReadsItsOwnFileAndQuotesWhatItIsTold) {
   EXPECT_THAT(script, HasSubstr("data = '../data/noise-b3r-recall.csv'"));
   EXPECT_THAT(script, HasSubstr("set output '../figures/noise-b3r-recall.'.ending"));
   EXPECT_THAT(script, HasSubstr("set label '(a) Noise, it''s' at "));
-  EXPECT_THAT(script, HasSubstr("set xtics norotate ('[0,1)' 1, '[1,2)' 2, '[2,3]' 3)"));
+  EXPECT_THAT(script, HasSubstr("set xtics norotate offset 0,0.3 ('[0,1)' 1, '[1,2)' 2, '[2,3]' 3)"));
   EXPECT_THAT(script, HasSubstr("(valid(6)?column(6):NaN) with linespoints"));  // my_own, third of its columns is 8
   EXPECT_THAT(script, HasSubstr("set label 'my_own' at "));
   EXPECT_THAT(script, HasSubstr(pen_of(method_styles({"gc"}).at("gc"))));
