@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -133,15 +135,20 @@ std::string read_file(const std::string& path) {
     throw IoError(path, "", "is a device, expected a file");
   const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   if (file.value < 0) fail(path, "be opened");
-  std::string content;
-  char buffer[1 << 16];
+  // Room for one byte more than the file should have: reading then finds its end without more room. A pipe has no size.
+  const std::uintmax_t size = status.type() == fs::file_type::regular ? fs::file_size(path, error) : 0;
+  std::string content(error ? 4096 : std::max<std::uintmax_t>(size + 1, 4096), '\0');
+  std::size_t used = 0;
   while (true) {
-    const ssize_t count = ::read(file.value, buffer, sizeof buffer);
+    const ssize_t count = ::read(file.value, content.data() + used, content.size() - used);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(path, "be read");
-    if (count == 0) return content;
-    content.append(buffer, static_cast<std::size_t>(count));
+    if (count == 0) break;
+    used += static_cast<std::size_t>(count);
+    if (used == content.size()) content.resize(2 * used);
   }
+  content.resize(used);
+  return content;
 }
 
 void write_files(const std::vector<FileContent>& files) {

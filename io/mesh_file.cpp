@@ -9,31 +9,40 @@
 #include <iterator>
 
 #include "io/file.h"
+#include "io/inflate.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 namespace {
 
-std::string ending_of(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return text;
 }
+
+std::string ending_of(const std::filesystem::path& path) { return lower_case(path.extension().string()); }
 
 using Parser = StoredMesh (*)(const std::string& path, std::string_view content);
 struct MeshFormat {
   const char* ending;
   Parser parse;
+  bool is_only_for_meshes;  ///< whatever has a name of this ending is a mesh
 };
-constexpr MeshFormat kFormats[] = {{".ply", parse_ply}, {".off", parse_off}, {".obj", parse_obj},
-                                   {".stl", parse_stl}, {".xyz", parse_xyz}, {".pcd", parse_pcd}};
+constexpr MeshFormat kFormats[] = {{".ply", parse_ply, true}, {".off", parse_off, true},  {".obj", parse_obj, true},
+                                   {".stl", parse_stl, true}, {".pcd", parse_pcd, true},  {".xyz", parse_xyz, true},
+                                   {".pts", parse_xyz, true}, {".asc", parse_xyz, false}, {".txt", parse_xyz, false},
+                                   {".csv", parse_xyz, false}};
 
-Parser parser_of(const std::string& path) {
-  const std::string ending = ending_of(path);
-  for (const MeshFormat& format : kFormats)
-    if (ending == format.ending) return format.parse;
-  return nullptr;
+bool is_compressed(const std::string& path) { return ending_of(path) == ".gz"; }
+
+/// Null if no format has such names.
+const MeshFormat* format_of(const std::string& path) {
+  const std::filesystem::path name = path;
+  const std::string ending = ending_of(is_compressed(path) ? name.stem() : name);
+  const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                  [&](const MeshFormat& format) { return ending == format.ending; });
+  return found == std::end(kFormats) ? nullptr : found;
 }
 
 std::string ply_header(const std::string& format, const Mesh& mesh) {
@@ -51,9 +60,13 @@ void append_bytes(std::string& text, std::uint64_t bits, int bytes) {
 
 }  // namespace
 
-void TriangleBuilder::add_polygon(const Indices& corners) {
+void TriangleBuilder::reserve(std::int64_t triangles) { corners_.reserve(3 * static_cast<std::size_t>(triangles)); }
+
+void TriangleBuilder::add(int a, int b, int c) { corners_.insert(corners_.end(), {a, b, c}); }
+
+void TriangleBuilder::add_polygon(const std::vector<std::int64_t>& corners) {
   for (std::size_t i = 2; i < corners.size(); ++i)
-    corners_.insert(corners_.end(), {corners[0], corners[i - 1], corners[i]});
+    add(static_cast<int>(corners[0]), static_cast<int>(corners[i - 1]), static_cast<int>(corners[i]));
 }
 
 Triangles TriangleBuilder::build() const {
@@ -67,17 +80,21 @@ std::string mesh_endings() {
     const bool is_last = &format == std::end(kFormats) - 1;
     text += (text.empty() ? "" : is_last ? " or " : ", ") + std::string(format.ending);
   }
-  return text;
+  return text + " (also with .gz behind)";
 }
 
-bool is_mesh_name(const std::string& path) { return parser_of(path) != nullptr; }
+bool is_mesh_name(const std::string& path) {
+  const MeshFormat* const format = format_of(path);
+  return format != nullptr && format->is_only_for_meshes;
+}
 
 StoredMesh read_mesh(const std::string& path) {
-  const Parser parser = parser_of(path);
-  const std::string content = read_file(path);
-  if (!parser) throw IoError(path, "", "unknown mesh format, expected a name that ends in " + mesh_endings());
+  const MeshFormat* const format = format_of(path);
+  std::string content = read_file(path);
+  if (!format) throw IoError(path, "", "unknown mesh format, expected a name that ends in " + mesh_endings());
+  if (is_compressed(path) && !content.empty()) content = inflated(path, content);
   if (content.empty()) throw IoError(path, "", "the file is empty, expected a mesh");
-  return parser(path, content);
+  return format->parse(path, content);
 }
 
 std::string ply_text(const Mesh& mesh) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,10 +10,11 @@
 
 namespace corral {
 
-/// The endings of the names that read_mesh accepts, for messages: ".ply, .off, ... or .pcd".
+/// The endings of the names that read_mesh accepts, for messages: ".ply, .off, ... or .csv (also with .gz behind)".
 std::string mesh_endings();
 
-/// Whether read_mesh knows the ending of the name.
+/// Whether a file of this name is a mesh or point cloud, to find those in a folder: not for .txt, .asc and .csv, which other
+/// files end in too.
 bool is_mesh_name(const std::string& path);
 
 /// A mesh with what its reader has to say.
@@ -20,17 +22,15 @@ struct StoredMesh : Mesh {
   std::vector<std::string> notes = {};  ///< what was left out or skipped, with counts: a sentence each, no full stop
 };
 
-/// Reads a mesh or a point cloud; the ending of the name gives the format: .ply (ASCII and both binary forms), .off, .obj,
-/// .stl (ASCII and binary), and for clouds only .xyz and .pcd (ASCII and binary, not compressed).
-/// Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
+/// Reads a mesh or a point cloud; the ending of the name gives the format: .ply, .off, .obj, .stl, and for clouds only .pcd,
+/// .xyz, .pts, .asc, .txt and .csv; each may be compressed by gzip (.ply.gz). README.md of this folder says what is read of
+/// each. Vertices keep their order; polygons become triangle fans. Counts are checked against the bytes that are there before
 /// anything is allocated.
-///   STL  corners at exactly the same place are one vertex (-0 is +0), numbered as they first appear; a facet that
-///        repeats a corner stays. The normals are not read.
-///   XYZ  one point per line, separated by white space or commas; columns after the third are not read.
-///   PCD  points whose x, y and z are all nan are missing returns of the sensor and left out. The pose of the sensor
-///        (VIEWPOINT) is not applied.
-/// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, more or
-///           less than the header promises, a coordinate that is not finite, a face with a vertex that does not exist.
+/// In all formats vertices of which a coordinate is nan are missing points: left out with the faces that use them, and
+/// noted. Also noted are two or more vertices at exactly the origin, where sensors write misses, and what follows the last
+/// element that a file promises.
+/// Throws    IoError that names the file, the line or byte, and what was expected there: missing, empty, cut short, less than
+///           the header promises, a coordinate that is infinite, a face with a vertex that does not exist.
 StoredMesh read_mesh(const std::string& path);
 
 /// The mesh as ASCII PLY in double precision; reading it back gives the same mesh.
@@ -50,8 +50,8 @@ StoredMesh parse_ply(const std::string& path, std::string_view content);
 StoredMesh parse_off(const std::string& path, std::string_view content);
 StoredMesh parse_obj(const std::string& path, std::string_view content);
 StoredMesh parse_stl(const std::string& path, std::string_view content);
-StoredMesh parse_xyz(const std::string& path, std::string_view content);
 StoredMesh parse_pcd(const std::string& path, std::string_view content);
+StoredMesh parse_xyz(const std::string& path, std::string_view content);  // every list of points
 
 /// The most vertices or faces a mesh may have: they are counted in int.
 constexpr long long kMaximumCount = 2147483647;
@@ -59,7 +59,10 @@ constexpr long long kMaximumCount = 2147483647;
 /// Collects polygons as triangle fans around their first corner.
 class TriangleBuilder {
  public:
-  void add_polygon(const Indices& corners);
+  void reserve(std::int64_t triangles);
+  void add(int a, int b, int c);
+  void add_polygon(const std::vector<std::int64_t>& corners);
+  bool empty() const { return corners_.empty(); }
   Triangles build() const;
 
  private:

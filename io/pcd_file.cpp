@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // PCD, the format of the Point Cloud Library: a text header that names the fields of a point, then the points as lines of
-// text or as packed little-endian bytes.
+// text, as packed little-endian bytes, or field by field and compressed.
+#include <lzf.h>
+
+#include <array>
 #include <cmath>
 
-#include "io/mesh_file.h"
+#include "io/mesh_cleanup.h"
 #include "io/pcd_header.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -11,57 +14,50 @@
 namespace corral {
 namespace {
 
-/// Collects points; those without any coordinate are missing returns of the sensor and are left out.
-class CloudBuilder {
- public:
-  explicit CloudBuilder(std::int64_t points) : points_(points, 3) {}
+StoredMesh empty_cloud(const PcdHeader& header) {
+  StoredMesh cloud;
+  cloud.vertices.resize(header.points, 3);
+  if (header.has_normals()) cloud.normals.resize(header.points, 3);
+  cloud.sensor = header.sensor;
+  return cloud;
+}
 
-  /// What is wrong with the point; empty if it was added or left out.
-  std::string add(const Eigen::RowVector3d& point) {
-    if (point.allFinite())
-      points_.row(used_++) = point;
-    else if (!point.array().isNaN().all())
-      return "found the point " + to_text(point(0)) + " " + to_text(point(1)) + " " + to_text(point(2)) +
-             ", expected three finite coordinates, or three nan where the sensor saw nothing";
-    return "";
-  }
-  StoredMesh take() {
-    points_.conservativeResize(used_, 3);
-    StoredMesh cloud;
-    cloud.vertices = std::move(points_);
-    return cloud;
-  }
-
- private:
-  Points points_;
-  Eigen::Index used_ = 0;
-};
+/// Where the numbers of a field go; null for those that are not read.
+double* column_of(StoredMesh& cloud, const PcdField& field) {
+  if (field.axis < 0 || (field.axis >= 3 && cloud.normals.rows() == 0)) return nullptr;
+  return field.axis < 3 ? cloud.vertices.col(field.axis).data() : cloud.normals.col(field.axis - 3).data();
+}
 
 StoredMesh read_text(const PcdHeader& header, LineReader& reader) {
   const std::size_t values = header.values_per_point(), bytes = reader.rest().size();
-  // The shortest value takes two bytes: a digit and a separator.
-  if (static_cast<std::size_t>(header.points) > bytes / (2 * values))
+  // The shortest value takes two bytes: a digit and a separator. The last line may lack its end.
+  if (static_cast<std::size_t>(header.points) > (bytes + 1) / (2 * values))
     reader.fail("the header promises " + std::to_string(header.points) + " points of " + std::to_string(values) +
                 " values, but only " + std::to_string(bytes) + " bytes follow");
-  CloudBuilder cloud(header.points);
+  StoredMesh cloud = empty_cloud(header);
+  std::vector<double*> columns;
+  for (const PcdField& field : header.fields) columns.push_back(column_of(cloud, field));
+  reader.allow_open_end();
   for (std::int64_t row = 0; row < header.points; ++row) {
-    reader.need("point " + std::to_string(row) + " of " + std::to_string(header.points));
-    const auto& found = reader.fields();
-    if (found.size() != values)
-      reader.fail("found " + std::to_string(found.size()) + " values, expected " + std::to_string(values));
-    Eigen::RowVector3d point;
-    std::size_t next = 0;
-    for (const PcdField& field : header.fields)
-      for (std::int64_t i = 0; i < field.count; ++i) {
-        const double value = parse_number(reader, found[next++], field.type, field.type_name);
-        if (field.axis >= 0) point(field.axis) = value;
+    if (!reader.next()) reader.fail_at_end("point " + std::to_string(row) + " of " + std::to_string(header.points));
+    for (std::size_t i = 0; i < header.fields.size(); ++i) {
+      const PcdField& field = header.fields[i];
+      for (std::int64_t left = field.count; left > 0; --left) {
+        const std::string_view text = reader.take();
+        if (text.empty())
+          reader.fail("found " + std::to_string(reader.fields().size()) + " values, expected " +
+                      std::to_string(values));
+        const bool is_coordinate = field.axis >= 0 && field.axis < 3 && field.type.kind == 'f';
+        const double value =
+            is_coordinate ? reader.coordinate(text) : parse_number(reader, text, field.type, field.type_name);
+        if (columns[i]) columns[i][row] = value;
       }
-    const std::string problem = cloud.add(point);
-    if (!problem.empty()) reader.fail(problem);
+    }
+    if (!reader.take().empty())
+      reader.fail("found " + std::to_string(reader.fields().size()) + " values, expected " + std::to_string(values));
   }
-  if (reader.next())
-    reader.fail("found " + quoted(reader.line()) + " after the last point, expected the end of the file");
-  return cloud.take();
+  note_ending(reader, "point", cloud.notes);
+  return cloud;
 }
 
 /// The library's own writer pads a file: after the last point follow as many zero bytes as the header leaves free in a page
@@ -72,42 +68,108 @@ bool is_page_filler(std::string_view left, std::size_t header_bytes) {
   return false;
 }
 
-StoredMesh read_binary(const PcdHeader& header, std::string_view body, const std::string& path,
-                       std::size_t header_bytes) {
-  const auto points = static_cast<std::size_t>(header.points);
-  const std::size_t stride = header.bytes_per_point();
-  if (points > body.size() / stride)
-    throw IoError(path, "header",
-                  "promises " + std::to_string(points) + " points of " + std::to_string(stride) + " bytes, but only " +
-                      std::to_string(body.size()) + " bytes follow");
-  const std::string_view left = body.substr(points * stride);
-  if (!left.empty() && !is_page_filler(left, header_bytes))
-    throw IoError(path, "byte " + std::to_string(points * stride) + " after the header",
-                  std::to_string(left.size()) + " bytes follow the last point, expected the end of the file");
-  CloudBuilder cloud(header.points);
-  for (std::size_t row = 0; row < points; ++row) {
-    Eigen::RowVector3d point;
-    std::size_t at = row * stride;
-    for (const PcdField& field : header.fields) {
-      if (field.axis >= 0) point(field.axis) = decode_number(field.type, body.data() + at);
+/// What follows the line DATA.
+class BinaryPoints {
+ public:
+  BinaryPoints(const std::string& path, const PcdHeader& header, std::string_view body, std::size_t header_bytes)
+      : path_(path), header_(header), body_(body), header_bytes_(header_bytes) {}
+
+  StoredMesh read() {
+    const std::size_t points = static_cast<std::size_t>(header_.points), stride = header_.bytes_per_point();
+    if (points > body_.size() / stride)
+      throw IoError(path_, "header",
+                    "promises " + std::to_string(points) + " points of " + std::to_string(stride) +
+                        " bytes, but only " + std::to_string(body_.size()) + " bytes follow");
+    cloud_ = empty_cloud(header_);
+    std::size_t at = 0;
+    for (const PcdField& field : header_.fields) {
+      decode(field, body_.data() + at, stride, at);
       at += static_cast<std::size_t>(field.count) * field.type.bytes;
     }
-    const std::string problem = cloud.add(point);
-    if (!problem.empty())
-      throw IoError(path, "byte " + std::to_string(row * stride) + " after the header",
-                    problem + " (point " + std::to_string(row) + " of " + std::to_string(points) + ")");
+    return finish(points * stride);
   }
-  return cloud.take();
-}
+
+  /// All values of the first field, then all of the second, and so on: compressed, behind the sizes before and after.
+  StoredMesh read_compressed() {
+    const std::size_t compressed = size_at(0), size = size_at(4);
+    const std::string unpacked = unpack(compressed, size);
+    cloud_ = empty_cloud(header_);
+    std::size_t at = 0;
+    for (const PcdField& field : header_.fields) {
+      decode(field, unpacked.data() + at, field.type.bytes, at);
+      at += static_cast<std::size_t>(header_.points * field.count) * field.type.bytes;
+    }
+    return finish(8 + compressed);
+  }
+
+ private:
+  /// `place` is where the first number of the field is, for messages.
+  void decode(const PcdField& field, const char* first, std::size_t stride, std::size_t place) {
+    double* const column = column_of(cloud_, field);
+    if (column == nullptr) return;
+    const auto points = static_cast<std::size_t>(header_.points);
+    decode_numbers(field.type, false, first, stride, points, column);
+    if (field.axis >= 3) return;
+    for (std::size_t row = 0; row < points; ++row)
+      if (std::isinf(column[row]))
+        fail(place + row * stride, "found " + to_text(column[row]) + " in point " + std::to_string(row) + " of " +
+                                       std::to_string(points) + ", expected a finite coordinate");
+  }
+
+  std::size_t size_at(std::size_t place) const {
+    constexpr NumberType kSize = {4, 'u'};
+    if (body_.size() < 8) fail(body_.size(), "the file ends here, expected the two sizes of the compressed points");
+    return static_cast<std::size_t>(decode_number(kSize, body_.data() + place));
+  }
+
+  /// The sizes are checked before there is memory for them: three bytes of LZF stand for 264 at most.
+  std::string unpack(std::size_t compressed, std::size_t size) const {
+    const std::size_t expected = static_cast<std::size_t>(header_.points) * header_.bytes_per_point();
+    if (compressed > body_.size() - 8)
+      fail(0, "promises " + std::to_string(compressed) + " compressed bytes, but only " +
+                  std::to_string(body_.size() - 8) + " follow");
+    if (size != expected)
+      fail(4, "promises " + std::to_string(size) + " bytes of points, expected " + std::to_string(expected) +
+                  " as the header says");
+    if (size > 88 * compressed)
+      fail(4, "promises " + std::to_string(size) + " bytes from " + std::to_string(compressed) +
+                  " compressed ones, expected no more than 88 times as many");
+    std::string bytes(size, '\0');
+    const std::size_t found = size == 0 ? 0
+                                        : lzf_decompress(body_.data() + 8, static_cast<unsigned>(compressed),
+                                                         bytes.data(), static_cast<unsigned>(size));
+    if (found != size)
+      fail(8, "the compressed points are damaged, expected LZF data of " + std::to_string(size) + " bytes");
+    return bytes;
+  }
+
+  StoredMesh finish(std::size_t used) {
+    const std::string_view left = body_.substr(used);
+    if (!left.empty() && !is_page_filler(left, header_bytes_))
+      cloud_.notes.push_back(unread_note(left.size(), "point"));
+    return std::move(cloud_);
+  }
+
+  [[noreturn]] void fail(std::size_t place, const std::string& problem) const {
+    throw IoError(path_, "byte " + std::to_string(place) + " after the header", problem);
+  }
+
+  const std::string& path_;
+  const PcdHeader& header_;
+  std::string_view body_;
+  std::size_t header_bytes_;
+  StoredMesh cloud_;
+};
 
 }  // namespace
 
 StoredMesh parse_pcd(const std::string& path, std::string_view content) {
   LineReader reader(path, content, '#');
   const PcdHeader header = parse_pcd_header(reader);
-  if (header.encoding == PcdEncoding::Ascii) return read_text(header, reader);
+  if (header.encoding == PcdEncoding::Ascii) return cleaned(read_text(header, reader));
   const std::string_view body = reader.rest();
-  return read_binary(header, body, path, content.size() - body.size());
+  BinaryPoints points(path, header, body, content.size() - body.size());
+  return cleaned(header.encoding == PcdEncoding::Binary ? points.read() : points.read_compressed());
 }
 
 }  // namespace corral

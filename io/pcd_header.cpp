@@ -2,6 +2,7 @@
 #include "io/pcd_header.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "io/mesh_file.h"
@@ -45,10 +46,14 @@ class Entries {
   bool here_ = false;  // the reader is at an entry that has not been consumed yet
 };
 
-void check_version(const LineReader& reader, std::string_view version) {
+/// Files of version .5, and those that name none, need not say more than the names of the fields and the number of points.
+bool is_old(Entries& entries, const LineReader& reader) {
+  if (!entries.is("VERSION") && (entries.is("FIELDS") || entries.is("COLUMNS"))) return true;
+  const std::string_view version = entries.take("VERSION", 1)[0];
   for (const std::string_view known : {"0.7", ".7", "0.6", ".6"})
-    if (version == known) return;
-  reader.fail("found the version " + quoted(version) + ", expected 0.7 or 0.6");
+    if (version == known) return false;
+  if (version == "0.5" || version == ".5") return true;
+  reader.fail("found the version " + quoted(version) + ", expected 0.7, 0.6 or 0.5");
 }
 
 std::vector<PcdField> parse_fields(const LineReader& reader, const Values& names) {
@@ -60,23 +65,26 @@ std::vector<PcdField> parse_fields(const LineReader& reader, const Values& names
     if (!seen.insert(names[i]).second && names[i] != "_") reader.fail("field " + quoted(names[i]) + " occurs twice");
   }
   int axis = 0;
-  for (const std::string_view coordinate : {"x", "y", "z"}) {
-    const auto place = std::find(names.begin(), names.end(), coordinate);
-    if (place == names.end()) reader.fail("field " + quoted(coordinate) + " is missing, expected fields x, y and z");
-    fields[static_cast<std::size_t>(place - names.begin())].axis = axis++;
+  for (const std::string_view wanted : {"x", "y", "z", "normal_x", "normal_y", "normal_z"}) {
+    const auto place = std::find(names.begin(), names.end(), wanted);
+    if (place != names.end())
+      fields[static_cast<std::size_t>(place - names.begin())].axis = axis;
+    else if (axis < 3)
+      reader.fail("field " + quoted(wanted) + " is missing, expected fields x, y and z");
+    ++axis;
   }
   return fields;
 }
 
-void parse_types(Entries& entries, const LineReader& reader, std::vector<PcdField>& fields) {
-  const Values sizes = entries.take("SIZE", fields.size());
+void parse_types(Entries& entries, const LineReader& reader, bool is_old, std::vector<PcdField>& fields) {
+  const Values sizes = is_old && !entries.is("SIZE") ? Values(fields.size(), "4") : entries.take("SIZE", fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (sizes[i] != "1" && sizes[i] != "2" && sizes[i] != "4" && sizes[i] != "8")
       reader.fail("the size of field " + quoted(fields[i].name) + " is " + quoted(sizes[i]) +
                   ", expected 1, 2, 4 or 8 bytes");
     fields[i].type.bytes = static_cast<std::size_t>(sizes[i][0] - '0');
   }
-  const Values& types = entries.take("TYPE", fields.size());
+  const Values types = is_old && !entries.is("TYPE") ? Values(fields.size(), "F") : entries.take("TYPE", fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i) {
     fields[i].type_name = std::string(types[i]) + std::string(sizes[i]);
     if (types[i] == "F" && fields[i].type.bytes < 4)
@@ -103,14 +111,23 @@ void parse_counts(const LineReader& reader, const Values& counts, std::vector<Pc
 PcdEncoding parse_encoding(const LineReader& reader, std::string_view encoding) {
   if (encoding == "ascii") return PcdEncoding::Ascii;
   if (encoding == "binary") return PcdEncoding::Binary;
-  if (encoding == "binary_compressed")
-    reader.fail(
-        "compressed PCD is not read, expected binary or ascii ('pcl_convert_pcd_ascii_binary IN.pcd OUT.pcd 1' of the "
-        "Point Cloud Library converts it to binary)");
-  reader.fail("found the data " + quoted(encoding) + ", expected ascii or binary");
+  if (encoding == "binary_compressed") return PcdEncoding::Compressed;
+  reader.fail("found the data " + quoted(encoding) + ", expected ascii, binary or binary_compressed");
+}
+
+/// tx ty tz qw qx qy qz. A file that knows nothing of the sensor has the default, at the origin without a turn.
+std::optional<Eigen::Vector3d> parse_viewpoint(const LineReader& reader, const Values& values) {
+  std::array<double, 7> pose;
+  std::transform(values.begin(), values.end(), pose.begin(), [&](auto value) { return reader.finite_number(value); });
+  if (pose == std::array<double, 7>{0, 0, 0, 1, 0, 0, 0}) return std::nullopt;
+  return Eigen::Vector3d(pose[0], pose[1], pose[2]);
 }
 
 }  // namespace
+
+bool PcdHeader::has_normals() const {
+  return std::count_if(fields.begin(), fields.end(), [](const PcdField& field) { return field.axis >= 3; }) == 3;
+}
 
 std::size_t PcdHeader::values_per_point() const {
   std::size_t values = 0;
@@ -127,17 +144,16 @@ std::size_t PcdHeader::bytes_per_point() const {
 PcdHeader parse_pcd_header(LineReader& reader) {
   PcdHeader header;
   Entries entries(reader);
-  check_version(reader, entries.take("VERSION", 1)[0]);
-  header.fields = parse_fields(reader, entries.take("FIELDS"));
-  parse_types(entries, reader, header.fields);
+  const bool old = is_old(entries, reader);
+  header.fields = parse_fields(reader, entries.take(old && entries.is("COLUMNS") ? "COLUMNS" : "FIELDS"));
+  parse_types(entries, reader, old, header.fields);
   if (entries.is("COUNT")) parse_counts(reader, entries.take("COUNT", header.fields.size()), header.fields);
-  const std::int64_t width = entries.take_count("WIDTH"), height = entries.take_count("HEIGHT");
-  // The pose of the sensor. It is checked but not applied: points are read as they are, and the pose between two files is
-  // given by --truth. Version 0.6 does not have it.
-  if (entries.is("VIEWPOINT"))
-    for (const std::string_view value : entries.take("VIEWPOINT", 7)) reader.finite_number(value);
-  header.points = entries.take_count("POINTS");
-  if (header.points != width * height)
+  const std::int64_t width = entries.take_count("WIDTH");
+  const std::int64_t height = old && !entries.is("HEIGHT") ? 1 : entries.take_count("HEIGHT");
+  // The pose of the sensor is not applied: points are read as they are. Version 0.6 does not have it.
+  if (entries.is("VIEWPOINT")) header.sensor = parse_viewpoint(reader, entries.take("VIEWPOINT", 7));
+  header.points = old && !entries.is("POINTS") ? width * height : entries.take_count("POINTS");
+  if (header.points != width * height || header.points > kMaximumCount)
     reader.fail("POINTS is " + std::to_string(header.points) + ", expected WIDTH x HEIGHT, " + std::to_string(width) +
                 " x " + std::to_string(height));
   header.encoding = parse_encoding(reader, entries.take("DATA", 1)[0]);

@@ -1,202 +1,149 @@
 // SPDX-License-Identifier: MIT
 // PLY: a text header that names elements and their properties, then the elements as lines of text or as packed bytes.
-#include <cmath>
+#include <algorithm>
 
-#include "io/mesh_file.h"
-#include "io/ply_header.h"
+#include "io/mesh_cleanup.h"
+#include "io/ply_body.h"
 #include "kernel/error.h"
-#include "kernel/number_text.h"
+#include "kernel/surface/scan/grid_triangulation.h"
 
 namespace corral {
 namespace {
 
-/// The values of a text body, one element per line.
-class TextBody {
- public:
-  TextBody(const std::string&, LineReader& reader) : reader_(reader) {}
+using Values = std::vector<std::int64_t>;
 
-  /// The fewest bytes that an element can take: a digit and a separator per property.
-  static std::size_t smallest(const PlyElement& element) { return 2 * element.properties.size(); }
-  std::size_t bytes_left() const { return reader_.rest().size(); }
-
-  void begin(const PlyElement& element, std::int64_t row) {
-    reader_.need("element " + quoted(element.name) + " " + std::to_string(row) + " of " +
-                 std::to_string(element.count));
-    fields_ = &reader_.fields();
-    next_ = 0;
-  }
-  double value(const PlyType& type) {
-    if (next_ == fields_->size()) fail("found " + std::to_string(next_) + " values, expected more");
-    return parse_number(reader_, (*fields_)[next_++], type, type.name);
-  }
-  std::size_t values_left() const { return fields_->size() - next_; }
-  void end() {
-    if (next_ < fields_->size())
-      fail("found " + std::to_string(fields_->size()) + " values, expected " + std::to_string(next_));
-  }
-  void finish() {
-    if (reader_.next())
-      fail("found " + quoted(reader_.line()) + " after the last element, expected the end of the file");
-  }
-  [[noreturn]] void fail(const std::string& problem) const { reader_.fail(problem); }
-
- private:
-  LineReader& reader_;
-  const std::vector<std::string_view>* fields_ = nullptr;
-  std::size_t next_ = 0;
-};
-
-/// The values of a binary body.
-template <bool kBigEndian>
-class BinaryBody {
- public:
-  BinaryBody(const std::string& path, LineReader& reader) : path_(path), all_(reader.rest()), left_(all_) {}
-
-  static std::size_t smallest(const PlyElement& element) {
-    std::size_t bytes = 0;
-    for (const PlyProperty& property : element.properties)
-      bytes += (property.count_type ? property.count_type : property.type)->bytes;
-    return bytes;
-  }
-  std::size_t bytes_left() const { return left_.size(); }
-  void begin(const PlyElement&, std::int64_t) {}
-
-  double value(const PlyType& type) {
-    place_ = all_.size() - left_.size();
-    if (left_.size() < type.bytes) fail("the file ends within a value");
-    const double number = decode_number(type, left_.data(), kBigEndian);
-    left_.remove_prefix(type.bytes);
-    return number;
-  }
-  std::size_t values_left() const { return left_.size(); }
-  void end() {}
-  void finish() {
-    place_ = all_.size() - left_.size();
-    if (!left_.empty())
-      fail(std::to_string(left_.size()) + " bytes follow the last element, expected the end of the file");
-  }
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw IoError(path_, "byte " + std::to_string(place_) + " after the header", problem);
-  }
-
- private:
-  const std::string& path_;
-  std::string_view all_, left_;
-  std::size_t place_ = 0;  // of the value read last
-};
-
-/// The positions of the properties that form a mesh.
-struct Layout {
-  int x, y, z;
-  int corners;
-};
-
-template <class Body>
 class MeshReader {
  public:
-  MeshReader(const std::string& path, const PlyHeader& header, LineReader& reader) : path_(path), body_(path, reader) {
-    bool seen = false;
-    for (const PlyElement& element : header.elements) {
-      check_size(element);
-      const Layout layout = layout_of(element);
-      if (element.name == "vertex") {
-        seen = true;
-        vertices_ = element.count;
-        mesh_.vertices.resize(vertices_, 3);
-      }
-      if (element.properties.empty()) continue;
-      for (std::int64_t row = 0; row < element.count; ++row) read_row(element, layout, row);
-    }
-    if (!seen) throw IoError(path_, "header", "no element vertex, expected one");
-    body_.finish();
-    for (const int corner : largest_corners_)
-      if (corner >= vertices_)
-        throw IoError(
-            path_, "faces",
-            "a corner is vertex " + std::to_string(corner) + ", expected 0 .. " + std::to_string(vertices_ - 1));
-    mesh_.triangles = triangles_.build();
+  MeshReader(const std::string& path, const PlyHeader& header, PlyBody& body)
+      : path_(path), header_(header), body_(body) {
+    for (const PlyElement& element : header_.elements)
+      if (element.name == "vertex") vertices_ = element.count;
   }
 
-  StoredMesh take() { return std::move(mesh_); }
+  StoredMesh read() {
+    if (vertices_ < 0) throw IoError(path_, "header", "no element vertex, expected one");
+    for (const PlyElement& element : header_.elements) {
+      check_size(element);
+      if (!element.properties.empty()) body_.read(element, wanted(element));
+    }
+    body_.note_end(mesh_.notes);
+    add_grid();
+    mesh_.triangles = triangles_.build();
+    return cleaned(std::move(mesh_));
+  }
 
  private:
   /// An element cannot hold more than the bytes that are there.
   void check_size(const PlyElement& element) const {
-    const std::size_t smallest = Body::smallest(element);
+    const std::size_t smallest = body_.smallest(element);
     if (smallest > 0 && static_cast<std::size_t>(element.count) > body_.bytes_left() / smallest + 1)
       throw IoError(path_, "header",
                     "promises " + std::to_string(element.count) + " of element " + quoted(element.name) +
                         ", but only " + std::to_string(body_.bytes_left()) + " bytes follow");
   }
 
-  Layout layout_of(const PlyElement& element) const {
-    const Layout layout{element.find("x"), element.find("y"), element.find("z"),
-                        std::max(element.find("vertex_indices"), element.find("vertex_index"))};
-    if (element.name == "vertex") {
-      for (const int place : {layout.x, layout.y, layout.z})
-        if (place < 0 || element.properties[static_cast<std::size_t>(place)].count_type)
-          throw IoError(path_, "header", "element vertex lacks a coordinate, expected properties x, y and z");
-    } else if (element.name == "face") {
-      if (layout.corners < 0 || !element.properties[static_cast<std::size_t>(layout.corners)].count_type ||
-          element.properties[static_cast<std::size_t>(layout.corners)].type->kind == 'f')
-        throw IoError(path_, "header",
-                      "element face lacks its corners, expected a list of whole numbers vertex_indices");
+  PlyWanted wanted(const PlyElement& element) {
+    if (element.name == "vertex") return wanted_of_vertices(element);
+    if (element.name == "face") {
+      triangles_.reserve(element.count);
+      return {{}, corners_of(element), [this](const Values& corners) { add_face(corners); }};
     }
-    return layout;
+    if (element.name == "tristrips")
+      return {{}, corners_of(element), [this](const Values& strips) { add_strips(strips); }};
+    if (element.name == "range_grid") {
+      cells_.reserve(static_cast<std::size_t>(element.count));
+      return {{}, corners_of(element), [this](const Values& cell) { add_cell(cell); }};
+    }
+    return {};
   }
 
-  void read_row(const PlyElement& element, const Layout& layout, std::int64_t row) {
-    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
-    body_.begin(element, row);
-    for (int place = 0; place < static_cast<int>(element.properties.size()); ++place) {
-      const PlyProperty& property = element.properties[static_cast<std::size_t>(place)];
-      if (property.count_type) {
-        read_list(property);
-        if (is_face && place == layout.corners) add_face();
-      } else {
-        const double value = body_.value(*property.type);
-        if (!is_vertex || (place != layout.x && place != layout.y && place != layout.z)) continue;
-        if (!std::isfinite(value)) body_.fail("found " + to_text(value) + ", expected a finite coordinate");
-        if (place == layout.x) mesh_.vertices(row, 0) = value;
-        if (place == layout.y) mesh_.vertices(row, 1) = value;
-        if (place == layout.z) mesh_.vertices(row, 2) = value;
+  PlyWanted wanted_of_vertices(const PlyElement& element) {
+    PlyWanted wanted;
+    const auto add = [&](Points& points, const char* const(&names)[3], bool are_coordinates) {
+      int places[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        places[axis] = element.find(names[axis]);
+        if (places[axis] < 0 || element.properties[static_cast<std::size_t>(places[axis])].count_type) return false;
       }
-    }
-    body_.end();
+      points.resize(element.count, 3);
+      for (int axis = 0; axis < 3; ++axis)
+        wanted.columns.push_back({places[axis], points.col(axis).data(), are_coordinates});
+      return true;
+    };
+    if (!add(mesh_.vertices, {"x", "y", "z"}, true))
+      throw IoError(path_, "header", "element vertex lacks a coordinate, expected properties x, y and z");
+    add(mesh_.normals, {"nx", "ny", "nz"}, false);
+    return wanted;
   }
 
-  void read_list(const PlyProperty& property) {
-    const double count = body_.value(*property.count_type);
-    if (!(count >= 0) || count > static_cast<double>(body_.values_left()))
-      body_.fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) +
-                 " values, expected no more than follow");
-    list_.clear();
-    for (auto i = static_cast<std::int64_t>(count); i > 0; --i) list_.push_back(body_.value(*property.type));
+  int corners_of(const PlyElement& element) const {
+    const int place = std::max(element.find("vertex_indices"), element.find("vertex_index"));
+    if (place < 0 || !element.properties[static_cast<std::size_t>(place)].count_type ||
+        element.properties[static_cast<std::size_t>(place)].type->kind == 'f')
+      throw IoError(path_, "header",
+                    "element " + element.name + " lacks its corners, expected a list of whole numbers vertex_indices");
+    return place;
   }
 
-  void add_face() {
-    if (list_.size() < 3) body_.fail("a face of " + std::to_string(list_.size()) + " corners, expected at least three");
-    Indices corners;
-    int largest = -1;
-    for (const double corner : list_) {
-      if (!(corner >= 0) || corner > static_cast<double>(kMaximumCount))
-        body_.fail("a corner is " + to_text(corner) + ", expected a vertex");
-      corners.push_back(static_cast<int>(corner));
-      largest = std::max(largest, corners.back());
-    }
-    if (largest >= vertices_ && vertices_ > 0)
-      body_.fail("a corner is vertex " + std::to_string(largest) + ", expected 0 .. " + std::to_string(vertices_ - 1));
-    if (vertices_ == 0) largest_corners_.push_back(largest);  // faces before vertices: checked at the end
+  void check_corner(std::int64_t corner) const {
+    if (corner < 0 || corner >= vertices_)
+      body_.fail("a corner is " + (corner < 0 ? std::to_string(corner) : "vertex " + std::to_string(corner)) +
+                 ", expected " +
+                 (vertices_ > 0 ? "0 .. " + std::to_string(vertices_ - 1) : "none: there are no vertices"));
+  }
+
+  void add_face(const Values& corners) {
+    if (corners.size() < 3)
+      body_.fail("a face of " + std::to_string(corners.size()) + " corners, expected at least three");
+    for (const std::int64_t corner : corners) check_corner(corner);
     triangles_.add_polygon(corners);
   }
 
+  /// Each corner and the two before it are a triangle, wound the other way at every second; -1 begins another strip. A strip
+  /// that repeats a corner turns there: that is no triangle.
+  void add_strips(const Values& strips) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < strips.size(); ++i) {
+      if (strips[i] == -1) {
+        first = i + 1;
+        continue;
+      }
+      check_corner(strips[i]);
+      if (i < first + 2) continue;
+      const bool is_turned = (i - first) % 2 == 1;
+      const auto corner = [&](std::size_t at) { return static_cast<int>(strips[at]); };
+      const int a = corner(i - 2 + is_turned), b = corner(i - 1 - is_turned), c = corner(i);
+      if (a != b && b != c && c != a) triangles_.add(a, b, c);
+    }
+  }
+
+  void add_cell(const Values& cell) {
+    if (cell.size() > 1)
+      body_.fail("a cell of " + std::to_string(cell.size()) + " vertices in the range grid, expected none or one");
+    if (!cell.empty()) check_corner(cell[0]);
+    cells_.push_back(cell.empty() ? -1 : static_cast<int>(cell[0]));
+  }
+
+  void add_grid() {
+    if (cells_.empty()) return;
+    const auto cells = static_cast<std::int64_t>(cells_.size());
+    if (header_.grid_columns < 1 || header_.grid_columns * header_.grid_rows != cells) {
+      mesh_.notes.push_back("the range grid of " + std::to_string(cells) +
+                            " cells gives no faces: expected obj_info num_cols and num_rows whose product that is");
+      return;
+    }
+    const Triangles faces = triangulate_grid(mesh_.vertices, cells_, header_.grid_columns);
+    for (Eigen::Index face = 0; face < faces.rows(); ++face)
+      triangles_.add(faces(face, 0), faces(face, 1), faces(face, 2));
+  }
+
   const std::string& path_;
-  Body body_;
+  const PlyHeader& header_;
+  PlyBody& body_;
   StoredMesh mesh_;
-  std::int64_t vertices_ = 0;
+  std::int64_t vertices_ = -1;
   TriangleBuilder triangles_;
-  std::vector<double> list_;
-  Indices largest_corners_;
+  Indices cells_;  // the vertex of each cell of the range grid, -1 for none
 };
 
 }  // namespace
@@ -204,15 +151,10 @@ class MeshReader {
 StoredMesh parse_ply(const std::string& path, std::string_view content) {
   LineReader reader(path, content);
   const PlyHeader header = parse_ply_header(reader);
-  switch (header.encoding) {
-    case PlyEncoding::Ascii:
-      return MeshReader<TextBody>(path, header, reader).take();
-    case PlyEncoding::Big:
-      return MeshReader<BinaryBody<true>>(path, header, reader).take();
-    case PlyEncoding::Little:
-      break;
-  }
-  return MeshReader<BinaryBody<false>>(path, header, reader).take();
+  const auto body = header.encoding == PlyEncoding::Ascii
+                        ? ply_text_body(reader)
+                        : ply_binary_body(path, reader.rest(), header.encoding == PlyEncoding::Big);
+  return MeshReader(path, header, *body).read();
 }
 
 }  // namespace corral

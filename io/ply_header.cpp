@@ -43,6 +43,16 @@ PlyEncoding parse_format(const LineReader& reader, const std::vector<std::string
               ", expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
 }
 
+/// obj_info is free text; two of its lines say how wide and high a range grid is.
+void read_remark(LineReader& reader, PlyHeader& header) {
+  const auto& fields = reader.fields();
+  if (fields.size() != 3 || fields[0] != "obj_info") return;
+  std::int64_t* const size = fields[1] == "num_cols"   ? &header.grid_columns
+                             : fields[1] == "num_rows" ? &header.grid_rows
+                                                       : nullptr;
+  if (size != nullptr) *size = reader.integer(fields[2], 0, kMaximumCount, fields[1]);
+}
+
 bool is_remark(std::string_view keyword) { return keyword == "comment" || keyword == "obj_info"; }
 
 }  // namespace
@@ -51,14 +61,16 @@ PlyHeader parse_ply_header(LineReader& reader) {
   PlyHeader header;
   reader.need("the word ply");
   if (reader.line() != "ply") reader.fail("found " + quoted(reader.line()) + ", expected the word ply");
-  do reader.need("the format");
-  while (is_remark(reader.fields()[0]));
+  for (reader.need("the format"); is_remark(reader.fields()[0]); reader.need("the format")) read_remark(reader, header);
   header.encoding = parse_format(reader, reader.fields());
   while (true) {
     reader.need("end_header");
     const auto& fields = reader.fields();
     if (fields[0] == "end_header") return header;
-    if (is_remark(fields[0])) continue;
+    if (is_remark(fields[0])) {
+      read_remark(reader, header);
+      continue;
+    }
     if (fields[0] == "element" && fields.size() == 3) {
       for (const PlyElement& other : header.elements)
         if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " occurs twice");

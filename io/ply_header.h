@@ -38,6 +38,7 @@ enum class PlyEncoding { Ascii, Little, Big };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::Ascii;
   std::vector<PlyElement> elements;
+  std::int64_t grid_columns = 0, grid_rows = 0;  ///< of obj_info num_cols and num_rows, which Stanford's scans have
 };
 
 /// Reads up to and including the line end_header. Throws IoError.

@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
-#include <numeric>
-#include <tuple>
+#include <map>
 
 #include "io/line_reader.h"
-#include "io/mesh_file.h"
+#include "io/mesh_cleanup.h"
 #include "io/stored_number.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -23,55 +23,88 @@ namespace {
 constexpr std::size_t kTitle = 80, kHeader = 84, kFacet = 50;
 constexpr NumberType kCount = {4, 'u'}, kCoordinate = {4, 'f'};
 
-/// The corners of all facets, three after three.
-class FacetSoup {
+/// Makes vertices of the corners of facets, numbered as they first appear. A corner is looked for in a table of hashes; where
+/// that is crowded, which only a file made for it can bring about, in an ordered map: no file can cause quadratic time.
+class Welder {
  public:
   using Corner = std::array<double, 3>;
 
-  void reserve(std::size_t facets) { corners_.reserve(3 * facets); }
+  /// A closed surface has half as many vertices as facets.
+  void reserve(std::size_t facets) {
+    corners_.reserve(3 * facets);
+    vertices_.reserve(facets / 2 + 1024);
+    while (slots_.size() < facets) slots_.resize(2 * slots_.size(), -1);
+  }
   bool is_full() const { return corners_.size() + 3 > static_cast<std::size_t>(kMaximumCount); }
+
   void add(Corner corner) {
     for (double& coordinate : corner) coordinate += 0.0;  // -0 and +0 are one place: the sum is +0 for both
-    corners_.push_back(corner);
+    if (2 * vertices_.size() >= slots_.size()) grow();
+    corners_.push_back(vertex_at(bits_of(corner)));
   }
 
-  /// Sorting rather than hashing, so that no file can cause quadratic time.
-  StoredMesh weld() const {
-    const auto corner = [&](int i) -> const Corner& { return corners_[static_cast<std::size_t>(i)]; };
-    Indices order(corners_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(),
-              [&](int a, int b) { return std::tie(corner(a), a) < std::tie(corner(b), b); });
-    Indices first(corners_.size());  // the first corner at the same place
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const bool same = i > 0 && corner(order[i]) == corner(order[i - 1]);
-      first[static_cast<std::size_t>(order[i])] = same ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
-    }
-    return numbered(first);
-  }
-
- private:
-  /// Vertices are numbered in the order in which the file first names them.
-  StoredMesh numbered(const Indices& first) const {
+  StoredMesh take() const {
     StoredMesh mesh;
-    int vertices = 0;
-    for (std::size_t i = 0; i < first.size(); ++i) vertices += first[i] == static_cast<int>(i);
-    mesh.vertices.resize(vertices, 3);
-    mesh.triangles.resize(static_cast<Eigen::Index>(first.size() / 3), 3);
-    Indices vertex_of(first.size());
-    int next = 0;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      if (first[i] == static_cast<int>(i)) {
-        mesh.vertices.row(next) = Eigen::Map<const Eigen::RowVector3d>(corners_[i].data());
-        vertex_of[i] = next++;
-      }
-      mesh.triangles(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) =
-          vertex_of[static_cast<std::size_t>(first[i])];
-    }
+    mesh.vertices.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
+    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        std::memcpy(&mesh.vertices(static_cast<Eigen::Index>(vertex), static_cast<Eigen::Index>(axis)),
+                    &vertices_[vertex][axis], sizeof(double));
+    mesh.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
     return mesh;
   }
 
-  std::vector<Corner> corners_;
+ private:
+  /// Compared bit by bit, a coordinate that is nan equals itself.
+  using Bits = std::array<std::uint64_t, 3>;
+
+  static Bits bits_of(const Corner& corner) {
+    Bits bits;
+    std::memcpy(bits.data(), corner.data(), sizeof bits);
+    return bits;
+  }
+
+  static std::uint64_t hash_of(const Bits& bits) {
+    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;  // 2^64 by the golden ratio
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word : bits) {
+      hash = (hash ^ word) * kOdd;
+      hash ^= hash >> 32;
+    }
+    return hash;
+  }
+
+  int vertex_at(const Bits& bits) {
+    constexpr std::size_t kProbes = 64;
+    const std::size_t mask = slots_.size() - 1, first = hash_of(bits) & mask;
+    for (std::size_t slot = first; slot < first + kProbes; ++slot) {
+      int& vertex = slots_[slot & mask];
+      if (vertex < 0) return vertex = append(bits);
+      if (vertices_[static_cast<std::size_t>(vertex)] == bits) return vertex;
+    }
+    const auto [place, is_new] = crowded_.try_emplace(bits, static_cast<int>(vertices_.size()));
+    return is_new ? append(bits) : place->second;
+  }
+
+  int append(const Bits& bits) {
+    vertices_.push_back(bits);
+    return static_cast<int>(vertices_.size()) - 1;
+  }
+
+  void grow() {
+    std::vector<Bits> vertices;
+    vertices.swap(vertices_);
+    vertices_.reserve(2 * vertices.size());
+    slots_.assign(4 * slots_.size(), -1);
+    crowded_.clear();
+    for (const Bits& bits : vertices) vertex_at(bits);  // each is new: it gets its old number
+  }
+
+  std::vector<Bits> vertices_;
+  std::vector<int> slots_ = std::vector<int>(1024, -1);  // vertices by their hashes, a power of two many; -1 is free
+  std::map<Bits, int> crowded_;
+  Indices corners_;
 };
 
 std::uint64_t binary_size(std::string_view content) {
@@ -90,30 +123,29 @@ StoredMesh parse_binary(const std::string& path, std::string_view content) {
     throw IoError(path, "byte " + std::to_string(content.size()),
                   "the file ends here, expected the " + std::to_string(kHeader) + " bytes of a binary header");
   const auto facets = static_cast<std::uint64_t>(decode_number(kCount, content.data() + kTitle));
-  if (content.size() != binary_size(content))
+  if (content.size() < binary_size(content))
     throw IoError(path, "byte " + std::to_string(kTitle),
                   "promises " + std::to_string(facets) + " facets, which take " + std::to_string(binary_size(content)) +
                       " bytes with the header, but the file has " + std::to_string(content.size()));
   if (3 * facets > static_cast<std::uint64_t>(kMaximumCount))
     throw IoError(path, "byte " + std::to_string(kTitle), "more facets than can be counted");
-  FacetSoup soup;
-  soup.reserve(static_cast<std::size_t>(facets));
+  Welder welder;
+  welder.reserve(static_cast<std::size_t>(facets));
   for (std::size_t facet = 0; facet < facets; ++facet) {
-    const std::size_t start = kHeader + kFacet * facet;
-    for (std::size_t corner = 1; corner <= 3; ++corner) {  // 0 is the normal, which the corners give anyway
-      FacetSoup::Corner place;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t at = start + 12 * corner + 4 * axis;
-        place[axis] = decode_number(kCoordinate, content.data() + at);
-        if (!std::isfinite(place[axis]))
-          throw IoError(path, "byte " + std::to_string(at),
-                        "found " + to_text(place[axis]) + " in facet " + std::to_string(facet) + " of " +
-                            std::to_string(facets) + ", expected a finite coordinate");
-      }
-      soup.add(place);
-    }
+    const std::size_t start = kHeader + kFacet * facet + 12;  // behind the normal, which the corners give anyway
+    std::array<double, 9> places;
+    decode_numbers(kCoordinate, false, content.data() + start, 4, places.size(), places.data());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (std::isinf(places[i]))
+        throw IoError(path, "byte " + std::to_string(start + 4 * i),
+                      "found " + to_text(places[i]) + " in facet " + std::to_string(facet) + " of " +
+                          std::to_string(facets) + ", expected a finite coordinate");
+    for (std::size_t i = 0; i < places.size(); i += 3) welder.add({places[i], places[i + 1], places[i + 2]});
   }
-  return soup.weld();
+  StoredMesh mesh = welder.take();
+  if (content.size() > binary_size(content))
+    mesh.notes.push_back(unread_note(content.size() - binary_size(content), "facet"));
+  return mesh;
 }
 
 /// Keywords may be written in either case.
@@ -125,10 +157,11 @@ bool is_word(std::string_view text, std::string_view lower_case) {
 
 class TextReader {
  public:
-  TextReader(const std::string& path, std::string_view content) : reader_(path, content) {}
+  TextReader(const std::string& path, std::string_view content) : reader_(path, content) { reader_.allow_open_end(); }
 
   /// One solid after another; what follows the words solid and endsolid is a name.
   StoredMesh read() {
+    bool lacks_end = false;
     reader_.need("the keyword solid");
     do {
       if (!is_word(reader_.fields()[0], "solid")) refuse("the keyword solid");
@@ -137,21 +170,24 @@ class TextReader {
         if (is_word(reader_.fields()[0], "endsolid")) break;
         read_facet();
       }
+      lacks_end = reader_.lacks_end();
     } while (reader_.next());
-    return soup_.weld();
+    StoredMesh mesh = welder_.take();
+    if (lacks_end) mesh.notes.push_back(kOpenEndNote);
+    return mesh;
   }
 
  private:
   void read_facet() {
     // The normal is ignored: some writers put no numbers there for a facet without area.
     if (!is_line({"facet", "normal"}, 3)) refuse("'facet normal NX NY NZ' or endsolid");
-    if (soup_.is_full()) reader_.fail("more facets than can be counted");
+    if (welder_.is_full()) reader_.fail("more facets than can be counted");
     need_line({"outer", "loop"});
     for (int corner = 0; corner < 3; ++corner) {
       reader_.need("'vertex X Y Z'");
       if (!is_line({"vertex"}, 3)) refuse("'vertex X Y Z'");
       const auto& fields = reader_.fields();
-      soup_.add({reader_.finite_number(fields[1]), reader_.finite_number(fields[2]), reader_.finite_number(fields[3])});
+      welder_.add({reader_.coordinate(fields[1]), reader_.coordinate(fields[2]), reader_.coordinate(fields[3])});
     }
     need_line({"endloop"});
     need_line({"endfacet"});
@@ -177,13 +213,13 @@ class TextReader {
   }
 
   LineReader reader_;
-  FacetSoup soup_;
+  Welder welder_;
 };
 
 }  // namespace
 
 StoredMesh parse_stl(const std::string& path, std::string_view content) {
-  return is_binary(content) ? parse_binary(path, content) : TextReader(path, content).read();
+  return cleaned(is_binary(content) ? parse_binary(path, content) : TextReader(path, content).read());
 }
 
 }  // namespace corral

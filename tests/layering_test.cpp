@@ -70,7 +70,7 @@ std::map<std::string, Room> make_rooms() {
 }
 const std::map<std::string, Room> kRooms = make_rooms();
 
-const Names kNeverInHeaders = {"hwy", "CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost"};
+const Names kNeverInHeaders = {"hwy", "CGAL", "OpenMesh", "flann", "ceres", "toml++", "boost", "zlib.h", "lzf.h"};
 const Names kOnlyInApps = {"chrono", "thread", "iostream", "ctime", "future"};  // clocks, threads, printing
 
 struct Include {

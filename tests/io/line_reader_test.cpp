@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,58 @@ TEST(LineReader, ALineWithoutItsEndIsCutShort) {
   EXPECT_THAT(io_error_of([] { lines_of("a\nb"); }), HasSubstr("some.txt, line 2: the file ends within this line"));
   EXPECT_THAT(io_error_of([] { lines_of("a\n# b", '#'); }), HasSubstr("line 2"));
   EXPECT_THAT(lines_of("a\n   "), ElementsAre("1:a")) << "white space alone is no line";
+}
+
+TEST(LineReader, ALineEndsAtLfCrLfOrCr) {
+  EXPECT_THAT(lines_of("a\r\rb\rc\r"), ElementsAre("1:a", "3:b", "4:c"));
+  EXPECT_THAT(lines_of("a\n\nb\rc\r\nd\n"), ElementsAre("1:a", "3:b", "4:c", "5:d"));
+  EXPECT_THAT(lines_of("a\r\nb\rc\r\n\r\nd\r\n"), ElementsAre("1:a", "2:b", "3:c", "5:d"));
+  EXPECT_THAT(io_error_of([] { lines_of("a\rb"); }), HasSubstr("some.txt, line 2: the file ends within this line"));
+  LineReader reader(kPath, "a\rb\r\n\1");
+  for (int line = 0; line < 2; ++line) ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.rest(), "\n\1") << "where lines end in CR, LF is data";
+}
+
+TEST(LineReader, TheLastLineMayLackItsEndIfAllowed) {
+  LineReader reader(kPath, "a\nb");
+  reader.allow_open_end();
+  ASSERT_TRUE(reader.next());
+  EXPECT_FALSE(reader.lacks_end());
+  ASSERT_TRUE(reader.next());
+  EXPECT_EQ(reader.line(), "b");
+  EXPECT_TRUE(reader.lacks_end());
+  EXPECT_FALSE(reader.next());
+}
+
+TEST(LineReader, CommentsBehindAndContinuationsIfAllowed) {
+  LineReader reader(kPath, "a # x \\\nb \\\n  c\\ # y\n d # z\n# all \\\ne\\\n", '#');
+  reader.allow_comments_behind();
+  reader.allow_continuations();
+  std::vector<std::string> lines;
+  while (reader.next()) {
+    lines.emplace_back();
+    for (std::string_view field = reader.take(); !field.empty(); field = reader.take()) lines.back() += field;
+    lines.back() += std::to_string(reader.line_number());
+  }
+  EXPECT_THAT(lines, ElementsAre("a1", "bcd4", "e\\6"));
+}
+
+TEST(LineReader, TakesOneFieldAfterTheOther) {
+  LineReader reader(kPath, " a\t bc  \nd\n");
+  reader.next();
+  EXPECT_EQ(reader.take(), "a");
+  EXPECT_EQ(reader.untaken(), "\t bc");
+  EXPECT_EQ(reader.take(), "bc");
+  EXPECT_EQ(reader.take(), "");
+  reader.next();
+  EXPECT_EQ(reader.take(), "d");
+}
+
+TEST(LineReader, CoordinatesMayBeMissingButNotInfinite) {
+  LineReader reader(kPath, "x\n");
+  reader.next();
+  EXPECT_TRUE(std::isnan(reader.coordinate("nan")));
+  EXPECT_THAT(io_error_of([&] { reader.coordinate("-inf"); }), HasSubstr("found '-inf', expected a finite number"));
 }
 
 TEST(LineReader, NeedSaysWhatWasToFollow) {

@@ -5,14 +5,17 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "io/group_file.h"
+#include "io/inflate.h"
 #include "io/matches_file.h"
 #include "io/mesh_file.h"
 #include "io/pose_entry.h"
 #include "io/transform_file.h"
 #include "kernel/random.h"
 #include "kernel/synthetic.h"
+#include "tests/io/gzip.h"
 #include "tests/io/pcd_encoder.h"
 #include "tests/io/ply_encoder.h"
 #include "tests/io/scratch.h"
@@ -86,6 +89,25 @@ TEST(Mutation, PlyAscii) { survive_as_mesh(testing::intricate_ply("ascii"), 3, p
 TEST(Mutation, PlyLittleEndian) { survive_as_mesh(testing::intricate_ply("binary_little_endian"), 4, parse_ply); }
 TEST(Mutation, PlyBigEndian) { survive_as_mesh(testing::intricate_ply("binary_big_endian"), 5, parse_ply); }
 
+TEST(Mutation, PlyStripsAndGrid) {
+  const std::string vertices =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
+      "property float ny\nproperty float nz\n";
+  const std::string lists =
+      "element tristrips 1\nproperty list int int vertex_indices\nelement range_grid 6\n"
+      "property list uchar int vertex_indices\n";
+  std::vector<testing::PlyRow> rows;
+  for (int i = 0; i < 4; ++i)
+    rows.push_back({{'f', i % 2 * 1.0}, {'f', i / 2 * 1.0}, {'f', 0.5}, {'f', 0}, {'f', 0}, {'f', 1}});
+  rows.push_back({{'i', 5}, {'i', 0}, {'i', 1}, {'i', 2}, {'i', 3}, {'i', -1}});
+  for (int cell = 0; cell < 6; ++cell)
+    rows.push_back(cell % 3 == 2 ? testing::PlyRow{{'B', 0}}
+                                 : testing::PlyRow{{'B', 1}, {'i', cell / 3 * 2.0 + cell % 3}});
+  for (const std::string& format : testing::kPlyFormats)
+    survive_as_mesh(testing::ply_file(format, "obj_info num_cols 3\nobj_info num_rows 2\n" + vertices + lists, rows),
+                    15, parse_ply);
+}
+
 TEST(Mutation, StlText) {
   survive_as_mesh(
       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0.5\nvertex 1 0 0.5\nvertex 1 1 0.5\nendloop\nendfacet\n"
@@ -104,6 +126,35 @@ TEST(Mutation, StlBinary) {
 }
 
 TEST(Mutation, Xyz) { survive_as_mesh("# by hand\n0 0 0.5\n1 0 .5\n1 1e0 0.5\n0,1,0.5\n", 12, parse_xyz); }
+TEST(Mutation, ListWithNames) { survive_as_mesh("//id;X;Y;Z\n3\n1;0;0;0.5\n2;1;0;.5\n3;1;1e0;0.5\n", 16, parse_xyz); }
+TEST(Mutation, ObjOfOthers) {
+  survive_as_mesh("vn 0 0 1\nv 0 0 0.5 # a\nv 1 0 0.5\nv 1 1 0.5\nvp 0 1\nvn 0 1 0\nf 1//1 2//2 \\\n3//-1\n", 17,
+                  parse_obj);
+}
+TEST(Mutation, OffWithNormals) {
+  survive_as_mesh(
+      "NCOFF3 1 0 # v f e\n0 0 0.5 255 0 0 255 0 0 1\n1 0 .5 1 2 3 4 0 0 2\nnan 1e0 0.5 0 0 0 0 0 0 1\n3 0 1 2", 18,
+      parse_off);
+}
+TEST(Mutation, PcdCompressed) {
+  // Literal runs: a byte with the length less one, then the bytes.
+  std::string packed;
+  for (int axis = 0; axis < 3; ++axis) {
+    packed += '\x07';
+    for (int point = 0; point < 2; ++point) packed += testing::encode({'f', axis + 0.5 * point}, false);
+  }
+  testing::PcdEntries entries;
+  entries.width = entries.points = "2";
+  survive_as_mesh(entries.text() + "DATA binary_compressed\n" +
+                      testing::encode({'I', static_cast<double>(packed.size())}, false) +
+                      testing::encode({'I', 24}, false) + packed,
+                  19, parse_pcd);
+}
+TEST(Mutation, Gzip) {
+  const std::string whole = testing::gzipped("OFF\n3 1 0\n0 0 0.5\n1 0 .5\n1 1e0 0.5\n3 0 1 2\n");
+  survive(whole, 20, [](const std::string& bad) { inflated("mesh", bad); });
+}
+
 TEST(Mutation, PcdText) { survive_as_mesh(testing::intricate_pcd(false), 13, parse_pcd); }
 TEST(Mutation, PcdBinary) { survive_as_mesh(testing::intricate_pcd(true), 14, parse_pcd); }
 

@@ -60,7 +60,7 @@ class PublishedData : public ::testing::Test {
       pair.truth = pair.name + "-inverse.xf";
     }
     for (const Finding& finding : check(dataset)) {
-      EXPECT_THAT(finding.problem, HasSubstr("the inverse of the truth fits better"));
+      EXPECT_THAT(finding.problem, HasSubstr("the truth fits inverted"));
       inverted.insert(finding.pair);
     }
     EXPECT_EQ(inverted.size(), dataset.pairs.size());
