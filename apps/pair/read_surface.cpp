@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "io/file.h"
 #include "io/mesh_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
@@ -11,8 +10,7 @@
 namespace corral {
 
 StoredMesh read_surface(const std::string& path) {
-  const bool is_list = path.size() > 4 && path.compare(path.size() - 4, 4, ".txt") == 0;
-  StoredMesh mesh = is_list ? parse_xyz(path, read_file(path)) : read_mesh(path);
+  StoredMesh mesh = read_mesh(path);
   const double diagonal = bounding_box(mesh.vertices).diagonal();
   if (!std::isfinite(diagonal))
     throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");

@@ -7,8 +7,7 @@
 
 namespace corral {
 
-/// A mesh that has a resolution; .txt is a list of points, as .xyz is. Throws IoError as read_mesh does, or if it has fewer
-/// than two distinct vertices.
+/// A mesh that has a resolution. Throws IoError as read_mesh does, or if it has fewer than two distinct vertices.
 StoredMesh read_surface(const std::string& path);
 
 }  // namespace corral
