@@ -11,11 +11,15 @@
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
+#include <cstdint>
+#include <cstring>
 #include <mutex>
-#include <tuple>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "kernel/rigid_transform.h"
+#include "kernel/surface/mesh/sides.h"
 
 namespace corral {
 namespace {
@@ -28,100 +32,52 @@ bool is_degenerate(const Mesh& mesh, Eigen::Index face) {
   return !(triangle_area(mesh.vertices.row(a), mesh.vertices.row(b), mesh.vertices.row(c)) > 0);
 }
 
-Triangles sound_triangles(const Mesh& mesh) {
-  std::vector<Eigen::Index> sound;
-  for (Eigen::Index face = 0; face < mesh.triangles.rows(); ++face)
-    if (!is_degenerate(mesh, face)) sound.push_back(face);
-  return mesh.triangles(sound, Eigen::all);
-}
+/// The triangles of a mesh without degenerate ones, wound alike. They are copied only if any must change.
+class SoundTriangles {
+ public:
+  explicit SoundTriangles(const Mesh& mesh) : given_(mesh.triangles) {
+    Indices sound;
+    for (int face = 0; face < static_cast<int>(given_.rows()); ++face) degenerate_ += is_degenerate(mesh, face);
+    if (degenerate_ > 0) {
+      for (int face = 0; face < static_cast<int>(given_.rows()); ++face)
+        if (!is_degenerate(mesh, face)) sound.push_back(face);
+      changed_ = given_(sound, Eigen::all);
+    }
+    across_ = sides_across(triangles(), mesh.vertices.rows());
+    reverse(wound_against_majority(triangles(), across_), mesh.vertices.rows());
+  }
 
-/// One side of a triangle: its vertices in ascending order, and whether the triangle runs along it that way.
-struct Side {
-  int low, high;
-  int face;
-  bool upwards;
+  const Triangles& triangles() const { return changed_ ? *changed_ : given_; }
+  const Indices& across() const { return across_; }
+  int degenerate() const { return degenerate_; }
+  int reversed() const { return reversed_; }
+
+ private:
+  void reverse(const Indices& faces, Eigen::Index vertices) {
+    reversed_ = static_cast<int>(faces.size());
+    if (reversed_ == 0) return;
+    if (!changed_) changed_ = given_;
+    for (const int face : faces) std::swap((*changed_)(face, 1), (*changed_)(face, 2));
+    across_ = sides_across(*changed_, vertices);
+  }
+
+  const Triangles& given_;
+  std::optional<Triangles> changed_;
+  Indices across_;
+  int degenerate_ = 0, reversed_ = 0;
 };
 
-/// All sides, those of one edge next to each other.
-std::vector<Side> sorted_sides(const Triangles& triangles) {
-  std::vector<Side> sides;
-  for (int face = 0; face < static_cast<int>(triangles.rows()); ++face)
-    for (int corner = 0; corner < 3; ++corner) {
-      const int from = triangles(face, corner), to = triangles(face, (corner + 1) % 3);
-      sides.push_back({std::min(from, to), std::max(from, to), face, from < to});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
-  });
-  return sides;
-}
-
-/// A triangle on the other side of an edge that no third one shares; `against` if both run along it the same way.
-struct Across {
-  int face;
-  bool against;
-};
-
-std::vector<std::vector<Across>> neighbors_across(const Triangles& triangles) {
-  std::vector<std::vector<Across>> across(static_cast<std::size_t>(triangles.rows()));
-  const std::vector<Side> sides = sorted_sides(triangles);
-  for (auto first = sides.begin(); first != sides.end();) {
-    const auto last = std::find_if(
-        first, sides.end(), [&](const Side& side) { return side.low != first->low || side.high != first->high; });
-    if (last - first == 2) {
-      const Side &a = first[0], &b = first[1];
-      across[static_cast<std::size_t>(a.face)].push_back({b.face, a.upwards == b.upwards});
-      across[static_cast<std::size_t>(b.face)].push_back({a.face, a.upwards == b.upwards});
-    }
-    first = last;
-  }
-  return across;
-}
-
-/// Reverses the triangles of each part that are wound against its majority; returns their number.
-int orient(Triangles& triangles) {
-  const auto across = neighbors_across(triangles);
-  enum Turn : char { Unknown, Kept, Turned };
-  std::vector<Turn> turns(static_cast<std::size_t>(triangles.rows()), Unknown);
-  int count = 0;
-  for (int seed = 0; seed < static_cast<int>(triangles.rows()); ++seed) {
-    if (turns[static_cast<std::size_t>(seed)] != Unknown) continue;
-    turns[static_cast<std::size_t>(seed)] = Kept;
-    Indices part{seed}, turned;
-    for (std::size_t next = 0; next < part.size(); ++next) {
-      const Turn here = turns[static_cast<std::size_t>(part[next])];
-      if (here == Turned) turned.push_back(part[next]);
-      for (const Across& other : across[static_cast<std::size_t>(part[next])]) {
-        Turn& there = turns[static_cast<std::size_t>(other.face)];
-        if (there != Unknown) continue;
-        there = (here == Turned) == other.against ? Kept : Turned;
-        part.push_back(other.face);
-      }
-    }
-    const bool most_turned = 2 * turned.size() > part.size();
-    for (const int face : most_turned ? part : turned)
-      if (!most_turned || turns[static_cast<std::size_t>(face)] == Kept) {
-        std::swap(triangles(face, 1), triangles(face, 2));
-        ++count;
-      }
-  }
-  return count;
-}
-
-/// Builds the half-edges and counts the triangles that they cannot hold.
-HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
+/// The half-edges of sound triangles that are wound alike; counts the triangles that they cannot hold.
+HalfEdgeMesh half_edges(const Points& vertices, const Triangles& triangles, Topology& topology) {
   // OpenMesh has one error stream for all threads, and neither its creation nor its use is thread-safe.
   static std::mutex error_stream;
   const std::lock_guard<std::mutex> lock(error_stream);
   HalfEdgeMesh half;
-  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
-    half.add_vertex({mesh.vertices(row, 0), mesh.vertices(row, 1), mesh.vertices(row, 2)});
+  for (Eigen::Index row = 0; row < vertices.rows(); ++row)
+    half.add_vertex({vertices(row, 0), vertices(row, 1), vertices(row, 2)});
   // OpenMesh reports every face that it refuses on a stream of its own; here refusals are counted.
   const bool was_enabled = omerr().is_enabled();
   omerr().disable();
-  Triangles triangles = sound_triangles(mesh);
-  topology.degenerate_faces = static_cast<int>(mesh.triangles.rows() - triangles.rows());
-  topology.misoriented_faces = orient(triangles);
   for (Eigen::Index face = 0; face < triangles.rows(); ++face) {
     const auto corner = [&](int i) { return OpenMesh::VertexHandle(triangles(face, i)); };
     topology.non_manifold_faces += !half.add_face(corner(0), corner(1), corner(2)).is_valid();
@@ -153,6 +109,48 @@ int count_boundary_loops(const HalfEdgeMesh& half) {
   return loops;
 }
 
+/// Where edges or fans meet that are none of one surface, the counts depend on how half-edges join them.
+void walk_half_edges(const HalfEdgeMesh& half, Topology& topology) {
+  topology.components = count_components(half);
+  topology.boundary_loops = count_boundary_loops(half);
+  double length = 0;
+  for (const auto edge : half.edges()) {
+    topology.boundary_edges += edge.is_boundary();
+    length += half.calc_edge_length(edge);
+  }
+  if (half.n_edges() > 0) topology.mean_edge_length = length / static_cast<double>(half.n_edges());
+}
+
+/// Vertices at the place of an earlier one. By a table of hashes; where that is crowded, by sorting.
+int count_duplicates(const Points& points) {
+  constexpr std::size_t kProbes = 64;
+  std::size_t size = 1024;
+  while (size < 2 * static_cast<std::size_t>(points.rows())) size *= 2;
+  std::vector<int> slots(size, -1);
+  int duplicates = 0;
+  for (int row = 0; row < static_cast<int>(points.rows()); ++row) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double coordinate = points(row, axis) + 0.0;  // -0 and +0 are one place
+      std::uint64_t bits;
+      std::memcpy(&bits, &coordinate, sizeof bits);
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15;
+      hash ^= hash >> 32;
+    }
+    std::size_t probe = 0;
+    for (; probe < kProbes; ++probe) {
+      int& slot = slots[(hash + probe) & (size - 1)];
+      if (slot < 0) slot = row;
+      if (points(slot, 0) != points(row, 0) || points(slot, 1) != points(row, 1) || points(slot, 2) != points(row, 2))
+        continue;
+      duplicates += slot != row;
+      break;
+    }
+    if (probe == kProbes) return static_cast<int>(points.rows() - distinct_points(points).rows());
+  }
+  return duplicates;
+}
+
 }  // namespace
 
 Points distinct_points(const Points& points) {
@@ -164,7 +162,8 @@ Points distinct_points(const Points& points) {
 
 std::vector<Indices> vertex_rings(const Mesh& mesh) {
   Topology unused;
-  const HalfEdgeMesh half = half_edges(mesh, unused);
+  const SoundTriangles sound(mesh);
+  const HalfEdgeMesh half = half_edges(mesh.vertices, sound.triangles(), unused);
   std::vector<Indices> rings(static_cast<std::size_t>(mesh.vertices.rows()));
   // By edges, not by turning around each vertex: where two fans touch in a vertex, the turn would see one of them.
   for (const auto edge : half.edges()) {
@@ -178,20 +177,23 @@ std::vector<Indices> vertex_rings(const Mesh& mesh) {
 
 Topology inspect_topology(const Mesh& mesh) {
   Topology topology;
-  topology.duplicate_vertices = static_cast<int>(mesh.vertices.rows() - distinct_points(mesh.vertices).rows());
+  topology.duplicate_vertices = count_duplicates(mesh.vertices);
   if (mesh.triangles.rows() == 0) return topology;
-  const HalfEdgeMesh half = half_edges(mesh, topology);
   std::vector<char> used(static_cast<std::size_t>(mesh.vertices.rows()), 0);
   for (const int vertex : mesh.triangles.reshaped()) used[static_cast<std::size_t>(vertex)] = 1;
   topology.isolated_vertices = static_cast<int>(std::count(used.begin(), used.end(), 0));
-  topology.components = count_components(half);
-  topology.boundary_loops = count_boundary_loops(half);
-  double length = 0;
-  for (const auto edge : half.edges()) {
-    topology.boundary_edges += edge.is_boundary();
-    length += half.calc_edge_length(edge);
+  const SoundTriangles sound(mesh);
+  topology.degenerate_faces = sound.degenerate();
+  topology.misoriented_faces = sound.reversed();
+  const SoundEdges edges = inspect_edges(mesh.vertices, sound.triangles(), sound.across());
+  if (!edges.is_sound) {
+    walk_half_edges(half_edges(mesh.vertices, sound.triangles(), topology), topology);
+    return topology;
   }
-  if (half.n_edges() > 0) topology.mean_edge_length = length / static_cast<double>(half.n_edges());
+  topology.components = edges.components;
+  topology.boundary_edges = edges.boundary_edges;
+  topology.boundary_loops = edges.boundary_loops;
+  topology.mean_edge_length = edges.mean_edge_length;
   return topology;
 }
 
