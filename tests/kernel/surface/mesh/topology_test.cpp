@@ -51,6 +51,31 @@ Topology counts(int duplicate, int isolated, int degenerate, int non_manifold, i
   return {duplicate, isolated, degenerate, 0, non_manifold, components, edges, loops, 0};
 }
 
+// Beside a piece that only half-edges can tell of, all of a mesh is walked by half-edges: the counts add up.
+TEST(InspectTopology, SidesAndHalfEdgesCountTheSame) {
+  const Mesh piece =
+      mesh_of(points_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}}), {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  const Topology alone = inspect_topology(piece);
+  RandomStream random(5);
+  for (int round = 0; round < 300; ++round) {
+    Mesh mesh = testing::grid(3 + static_cast<int>(random.below(6)), 3 + static_cast<int>(random.below(6)));
+    const auto any_face = [&] {
+      return static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(mesh.triangles.rows())));
+    };
+    for (std::uint64_t left = random.below(4); left > 0; --left) {
+      const Eigen::Index turned = any_face(), lost = any_face(), last = mesh.triangles.rows() - 1;
+      std::swap(mesh.triangles(turned, 0), mesh.triangles(turned, 1));
+      mesh.triangles.row(lost) = mesh.triangles.row(last).eval();
+      mesh.triangles.conservativeResize(last, 3);
+    }
+    const Topology found = inspect_topology(mesh), both = inspect_topology(together(mesh, piece, {100, 0, 0}));
+    expect_counts(both,
+                  {found.duplicate_vertices, found.isolated_vertices, found.degenerate_faces, found.misoriented_faces,
+                   found.non_manifold_faces + alone.non_manifold_faces, found.components + alone.components,
+                   found.boundary_edges + alone.boundary_edges, found.boundary_loops + alone.boundary_loops, 0});
+  }
+}
+
 TEST(InspectTopology, ClosedSphere) {
   for (const int level : {0, 1, 3}) {
     const Mesh mesh = testing::icosphere(level);
