@@ -164,7 +164,7 @@ TEST(BadInput, EveryCommandRefusesMalformedFiles) {
   place.put("cut.ply", mesh.substr(0, mesh.size() / 2));
   place.put("cut.csv", matches.substr(0, matches.size() - 5));
   place.put("empty.ply", "");
-  place.put("nan.off", "OFF\n1 0 0\nnan 0 0\n");
+  place.put("inf.off", "OFF\n1 0 0\ninf 0 0\n");
   place.put("corner.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
   place.put("zero.csv", replaced(matches, "# resolution 1", "# resolution 0"));
   place.put("short.csv", group_text({99, {}, {}}));
@@ -176,7 +176,7 @@ TEST(BadInput, EveryCommandRefusesMalformedFiles) {
       {"info empty.ply", "empty.ply: the file is empty"},
       {"info folder.ply", "folder.ply: is a directory"},
       {"info /dev/null", "/dev/null: is a device"},
-      {"info nan.off", "nan.off, line 3: found 'nan', expected a finite number"},
+      {"info inf.off", "inf.off, line 3: found 'inf', expected a finite number"},
       {"perturb corner.off -o b.ply", "corner.off, line 6: a corner is '3', expected a whole number in 0 .. 2"},
       {"group cut.csv -m gc -o g.csv", "cut.csv, line"},
       {"group zero.csv -m gc -o g.csv", "zero.csv, line 2: the resolution is '0', expected a length above zero"},
