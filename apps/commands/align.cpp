@@ -50,7 +50,8 @@ void say_sides(const std::vector<std::string>& paths, const std::vector<Mesh>& m
     const ViewOptions& side = views.side(view);
     const auto front = front_share(meshes[i], side);
     if (!are_given && (side.direction || !side.sensor.isZero(0)))
-      say("note: " + paths[i] + ": the sensor " + in_words(side) + ", as the file says");
+      say("note: " + paths[i] + ": the sensor " + in_words(side) +
+          (meshes[i].sensor ? ", as the file says" : ", by the side of its faces or normals"));
     if (!front || *front >= 0.5) continue;
     say("warning: " + paths[i] + ": the sensor sees the back of " + fixed(100 * (1 - *front), 0) +
         " % of the faces or normals in the file, by which it " + in_words(view_side(meshes[i])));

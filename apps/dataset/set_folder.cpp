@@ -51,7 +51,7 @@ std::vector<std::string> mesh_files(const std::string& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     if (is_mesh_name(entry->path().string()) && entry->is_regular_file(error)) files.push_back(entry->path().string());
   if (error) throw IoError(folder, "", "cannot be read as a folder (" + error.message() + ")");
-  if (files.empty()) throw IoError(folder, "", "has no meshes, expected files that end in " + mesh_endings());
+  if (files.empty()) throw IoError(folder, "", "has no meshes, expected files such as model.ply or model.obj");
   std::sort(files.begin(), files.end());
   return files;
 }

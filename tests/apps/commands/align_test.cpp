@@ -69,6 +69,26 @@ TEST(Align, WritesWhereEachViewIsAndWhatSpeaksForIt) {
   EXPECT_THAT(again.out, HasSubstr("part 1 of 1: a b c\n"));
 }
 
+// The same views, each moved so that the origin lies behind its surface: what the faces tell is enough.
+TEST(Align, WhereTheSensorStoodIsTakenFromTheFaces) {
+  const Workplace place;
+  put_views(place);
+  for (const std::string name : {"a", "b"}) {
+    ASSERT_EQ(place.corral("triangulate " + name + ".ply -o " + name + "-moved.ply").status, 0);
+    Mesh view = read_mesh(place / (name + "-moved.ply"));
+    view.vertices.col(2).array() -= 1.5 * view.vertices.col(2).minCoeff();
+    write_mesh(place / (name + ".ply"), view);
+  }
+  const Outcome told = place.corral("align a.ply b.ply -o out");
+  EXPECT_EQ(told.status, 0);
+  EXPECT_THAT(told.err, HasSubstr("note: a.ply: the sensor looks along "));
+  EXPECT_THAT(told.err, HasSubstr(", by the side of its faces or normals"));
+  EXPECT_THAT(told.out, HasSubstr("part 1 of 1: a b\n"));
+  const Outcome wrong = place.corral("align a.ply b.ply --direction 0,0,1 -o out");
+  EXPECT_THAT(wrong.err, HasSubstr("warning: a.ply: the sensor sees the back of "));
+  EXPECT_THAT(wrong.err, HasSubstr("hint: no two views were connected"));
+}
+
 TEST(Align, GivenPosesAreJudgedAndNothingElse) {
   const Workplace place;
   put_poses(place, put_views(place));

@@ -195,7 +195,7 @@ TEST(MakeB3r, RefusesModelsThatItCannotTellApartOrRead) {
   const std::string line = "dataset make b3r --models meshes -o set";
   EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: cannot be read as a folder"));
   fs::create_directory(place / "meshes");
-  EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: has no meshes, expected files that end in"));
+  EXPECT_THAT(place.corral(line).err, HasSubstr("meshes: has no meshes, expected files such as"));
   put_models(place);
   write_mesh(place / "meshes/odd-one.ply", testing::icosphere(1));
   EXPECT_THAT(place.corral(line).err, HasSubstr("a second model named odd-one"));
