@@ -42,7 +42,7 @@ void leave_out_missing(StoredMesh& mesh) {
   keep_rows(mesh.vertices, numbers, kept);
   keep_rows(mesh.normals, numbers, kept);
   keep_faces(mesh.triangles, numbers);
-  std::string note = counted(vertices - kept, "vertex", "vertices") + " without a place (nan)";
+  std::string note = counted(vertices - kept, "vertex", "vertices") + " with a nan coordinate";
   if (mesh.triangles.rows() < faces)
     note += " and " + counted(faces - mesh.triangles.rows(), "face", "faces") + " that used them";
   mesh.notes.push_back(note + (vertices - kept == 1 && mesh.triangles.rows() == faces ? " was" : " were") +
@@ -53,9 +53,10 @@ void tell_misses(StoredMesh& mesh) {
   const auto is_zero = mesh.vertices.array() == 0;
   const auto misses = (is_zero.col(0) && is_zero.col(1) && is_zero.col(2)).count();
   if (misses < 2) return;
-  mesh.notes.push_back(std::to_string(misses) +
-                       " vertices are at exactly (0, 0, 0), where many sensors write points that they missed: if these "
-                       "are none of the surface, take them out of the file or write nan for them");
+  mesh.notes.push_back(
+      std::to_string(misses) +
+      " vertices are at exactly (0, 0, 0), where many sensors write missing returns: if these are not on "
+      "the surface, take them out of the file or write nan for them");
 }
 
 void check_normals(StoredMesh& mesh) {

@@ -48,6 +48,7 @@ const MeshFormat* format_of(const std::string& path) {
 std::string ply_header(const std::string& format, const Mesh& mesh) {
   std::string text = "ply\nformat " + format + " 1.0\nelement vertex " + std::to_string(mesh.vertices.rows()) +
                      "\nproperty double x\nproperty double y\nproperty double z\n";
+  if (mesh.normals.rows() > 0) text += "property double nx\nproperty double ny\nproperty double nz\n";
   if (mesh.triangles.rows() > 0)
     text += "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
   return text + "end_header\n";
@@ -101,7 +102,11 @@ std::string ply_text(const Mesh& mesh) {
   std::string text = ply_header("ascii", mesh);
   for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
     text += to_text(mesh.vertices(row, 0)) + " " + to_text(mesh.vertices(row, 1)) + " " +
-            to_text(mesh.vertices(row, 2)) + "\n";
+            to_text(mesh.vertices(row, 2)) +
+            (mesh.normals.rows() > 0 ? " " + to_text(mesh.normals(row, 0)) + " " + to_text(mesh.normals(row, 1)) + " " +
+                                           to_text(mesh.normals(row, 2))
+                                     : "") +
+            "\n";
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row)
     text += "3 " + std::to_string(mesh.triangles(row, 0)) + " " + std::to_string(mesh.triangles(row, 1)) + " " +
             std::to_string(mesh.triangles(row, 2)) + "\n";
@@ -112,12 +117,15 @@ std::string binary_ply_text(const Mesh& mesh) {
   std::string text = ply_header("binary_little_endian", mesh);
   text.reserve(text.size() + 24 * static_cast<std::size_t>(mesh.vertices.rows()) +
                13 * static_cast<std::size_t>(mesh.triangles.rows()));
-  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row)
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint64_t bits;
-      std::memcpy(&bits, &mesh.vertices(row, axis), sizeof bits);
-      append_bytes(text, bits, 8);
-    }
+  const auto append = [&](const double& number) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &number, sizeof bits);
+    append_bytes(text, bits, 8);
+  };
+  for (Eigen::Index row = 0; row < mesh.vertices.rows(); ++row) {
+    for (int axis = 0; axis < 3; ++axis) append(mesh.vertices(row, axis));
+    for (int axis = 0; axis < mesh.normals.cols() && mesh.normals.rows() > 0; ++axis) append(mesh.normals(row, axis));
+  }
   for (Eigen::Index row = 0; row < mesh.triangles.rows(); ++row) {
     text += '\3';
     for (int i = 0; i < 3; ++i) append_bytes(text, static_cast<std::uint32_t>(mesh.triangles(row, i)), 4);

@@ -112,7 +112,7 @@ class ObjReader {
       for (auto named = first; named != last; ++named) {
         const Eigen::RowVector3d normal =
             Eigen::Map<const Eigen::RowVector3d>(&normals_[3 * static_cast<std::size_t>(named->second)]);
-        sum += last - first == 1 ? normal : normal.stableNormalized();
+        if (last - first == 1 || normal.allFinite()) sum += last - first == 1 ? normal : normal.stableNormalized();
       }
       constexpr double kOpposed = 1e-6;  // what rounding leaves of normals that point against each other
       if (last - first > 1) sum = sum.norm() > kOpposed ? sum.normalized() : Eigen::RowVector3d::Zero();
@@ -132,7 +132,7 @@ class ObjReader {
     if (skipped_ > 0) {
       std::string names;
       for (const std::string& name : skipped_names_) names += (names.empty() ? "" : ", ") + name;
-      notes.push_back(counted(skipped_, "statement", "statements") + " other than of polygons " +
+      notes.push_back(counted(skipped_, "statement", "statements") + " that are not supported " +
                       (skipped_ == 1 ? "was" : "were") + " skipped: " + names);
     }
     if (absent_normals_ > 0)

@@ -24,7 +24,7 @@ class MeshReader {
     if (vertices_ < 0) throw IoError(path_, "header", "no element vertex, expected one");
     for (const PlyElement& element : header_.elements) {
       check_size(element);
-      if (!element.properties.empty()) body_.read(element, wanted(element));
+      if (!element.properties.empty() || element.name == "vertex") body_.read(element, wanted(element));
     }
     body_.note_end(mesh_.notes);
     add_grid();
@@ -126,6 +126,10 @@ class MeshReader {
 
   void add_grid() {
     if (cells_.empty()) return;
+    if (!triangles_.empty()) {
+      mesh_.notes.push_back("the range grid was not read, as the file has faces of its own");
+      return;
+    }
     const auto cells = static_cast<std::int64_t>(cells_.size());
     if (header_.grid_columns < 1 || header_.grid_columns * header_.grid_rows != cells) {
       mesh_.notes.push_back("the range grid of " + std::to_string(cells) +

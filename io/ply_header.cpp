@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "io/ply_header.h"
+#include "kernel/number_text.h"
 
 #include <array>
 
@@ -50,8 +51,10 @@ void read_remark(LineReader& reader, PlyHeader& header) {
   std::int64_t* const size = fields[1] == "num_cols"   ? &header.grid_columns
                              : fields[1] == "num_rows" ? &header.grid_rows
                                                        : nullptr;
-  if (size != nullptr) *size = reader.integer(fields[2], 0, kMaximumCount, fields[1]);
+  if (size != nullptr) *size = parse_int(fields[2]).value_or(0);
 }
+
+constexpr std::size_t kMostDeclared = 1000;  // each name is compared with the others
 
 bool is_remark(std::string_view keyword) { return keyword == "comment" || keyword == "obj_info"; }
 
@@ -71,6 +74,9 @@ PlyHeader parse_ply_header(LineReader& reader) {
       read_remark(reader, header);
       continue;
     }
+    std::size_t declared = 0;
+    for (const PlyElement& each : header.elements) declared += 1 + each.properties.size();
+    if (declared >= kMostDeclared) reader.fail("more than 1000 elements and properties");
     if (fields[0] == "element" && fields.size() == 3) {
       for (const PlyElement& other : header.elements)
         if (other.name == fields[1]) reader.fail("element " + quoted(fields[1]) + " occurs twice");

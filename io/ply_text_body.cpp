@@ -7,6 +7,9 @@
 namespace corral {
 namespace {
 
+/// Numbers of a list that nothing reads may be of any size.
+std::int64_t whole(double number) { return std::abs(number) < 9e18 ? static_cast<std::int64_t>(number) : 0; }
+
 class TextBody : public PlyBody {
  public:
   explicit TextBody(LineReader& reader) : reader_(reader) { reader_.allow_open_end(); }
@@ -52,10 +55,9 @@ class TextBody : public PlyBody {
     const double count = value(*property.count_type, false);
     // The shortest value takes a character and a separator.
     if (!(count >= 0) || count > static_cast<double>(reader_.untaken().size() / 2))
-      fail("a list of " + std::to_string(static_cast<std::int64_t>(count)) + " values, expected no more than follow");
+      fail("a list of " + std::to_string(whole(count)) + " values, expected no more than follow");
     list_.clear();
-    for (auto i = static_cast<std::int64_t>(count); i > 0; --i)
-      list_.push_back(static_cast<std::int64_t>(value(*property.type, false)));
+    for (auto i = static_cast<std::int64_t>(count); i > 0; --i) list_.push_back(whole(value(*property.type, false)));
   }
 
   [[noreturn]] void fail_for_width() {

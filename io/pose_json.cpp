@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Poses in JSON objects: BOP's scene_gt.json, and matrices by name.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "io/pose_entry.h"
@@ -8,18 +9,33 @@
 namespace corral {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
-/// A deeply nested value would overflow the stack when it is released or copied.
+/// How deep brackets and braces are nested, those in strings aside.
+int nesting(const std::string& content) {
+  int depth = 0, deepest = 0;
+  bool is_string = false;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    const char letter = content[i];
+    if (is_string && letter == '\\')
+      ++i;
+    else if (letter == '"')
+      is_string = !is_string;
+    else if (!is_string && (letter == '[' || letter == '{'))
+      deepest = std::max(deepest, ++depth);
+    else if (!is_string && (letter == ']' || letter == '}'))
+      --depth;
+  }
+  return deepest;
+}
+
 Json parse_document(const std::string& path, const std::string& content) {
-  constexpr int kDeepest = 50;
+  constexpr int kDeepest = 50;  // more would overflow the stack when the value is released or copied
+  if (nesting(content) > kDeepest) throw IoError(path, "", "is nested more than 50 deep, expected poses");
   try {
-    return Json::parse(content, [&](int depth, Json::parse_event_t, const Json&) {
-      if (depth > kDeepest) throw IoError(path, "", "is nested more than 50 deep, expected poses");
-      return true;
-    });
+    return Json::parse(content);
   } catch (const Json::parse_error& error) {
-    throw IoError(path, "byte " + std::to_string(error.byte), "is no JSON there");
+    throw IoError(path, "byte " + std::to_string(error.byte), "is not valid JSON");
   } catch (const Json::exception&) {
     throw IoError(path, "", "holds a number that is too large, expected finite ones");
   }

@@ -105,10 +105,17 @@ bool has_unit_length(const double* numbers) {
   return std::abs(Eigen::Map<const Eigen::Vector4d>(numbers).norm() - 1) < 0.01;
 }
 
-/// A row of seven numbers has no convention of its own: the quaternion is where the unit length is.
-void order_seven(PoseEntry& entry) {
+/// Rows of seven numbers have no convention of their own: the quaternion is where all of them have unit length.
+bool is_quaternion_first(const std::vector<Row>& rows) {
+  const auto all = [&](std::size_t at) {
+    return std::all_of(rows.begin(), rows.end(), [&](const Row& row) { return has_unit_length(&row.numbers[at]); });
+  };
+  return all(0) && !all(3);
+}
+
+void order_seven(PoseEntry& entry, bool is_quaternion_first) {
   std::vector<double>& n = entry.numbers;
-  if (!has_unit_length(&n[3]) && has_unit_length(&n[0])) {
+  if (is_quaternion_first) {
     n = {n[4], n[5], n[6], n[1], n[2], n[3], n[0]};
     entry.notes.push_back("7 numbers are read as a quaternion w x y z and a translation");
   } else {
@@ -119,13 +126,14 @@ void order_seven(PoseEntry& entry) {
 /// A pose in each row.
 std::vector<PoseEntry> parse_trajectory(const std::vector<Row>& rows) {
   std::vector<PoseEntry> entries;
+  const bool first = rows[0].numbers.size() == 7 && is_quaternion_first(rows);
   for (const Row& row : rows) {
     PoseEntry entry{std::to_string(entries.size()), "", "", rows.size() > 1 ? row.place : "", row.numbers};
     if (row.numbers.size() == 8) {
       entry.source = row.first;
       entry.numbers.erase(entry.numbers.begin());
     }
-    if (row.numbers.size() == 7) order_seven(entry);
+    if (row.numbers.size() == 7) order_seven(entry, first);
     entries.push_back(entry);
   }
   return entries;

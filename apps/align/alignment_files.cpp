@@ -69,6 +69,16 @@ std::vector<ViewPair> read_view_pairs(const std::string& path, const std::vector
   return pairs;
 }
 
+std::vector<std::string> pose_names(const std::string& path) {
+  const CsvTable table = read_csv(path);
+  const int transform = table.column("transform");
+  std::vector<std::string> names;
+  if (transform < 0) return names;
+  for (const auto& row : table.rows)
+    names.push_back((std::filesystem::path(path).parent_path() / row[static_cast<std::size_t>(transform)]).string());
+  return names;
+}
+
 std::string pose_file(const std::string& folder, std::size_t number) {
   return (std::filesystem::path(folder) / "poses" / (std::to_string(number) + ".xf")).string();
 }

@@ -19,6 +19,9 @@ std::string view_name(const std::string& path);
 /// above 0, a transform that cannot be read.
 std::vector<ViewPair> read_view_pairs(const std::string& path, const std::vector<std::string>& names);
 
+/// The files of transforms that such a table names.
+std::vector<std::string> pose_names(const std::string& path);
+
 /// The file of the measured pose of a pair, numbered from 1.
 std::string pose_file(const std::string& folder, std::size_t number);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral align: views of one object into one frame.
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -38,8 +39,9 @@ std::vector<std::string> view_names(const std::vector<std::string>& paths) {
 
 std::string in_words(const ViewOptions& side) {
   const Eigen::Vector3d vector = side.direction.value_or(side.sensor);
-  const std::string text = fixed(vector.x(), 2) + "," + fixed(vector.y(), 2) + "," + fixed(vector.z(), 2);
-  return side.direction ? "looks along " + text : "stands at " + text;
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g,%.3g,%.3g", vector.x(), vector.y(), vector.z());
+  return std::string(side.direction ? "looks along " : "stands at ") + text;
 }
 
 /// Where the sensor of each view is taken to be, unless at the origin; and where that sees the back of the surface.
@@ -54,7 +56,8 @@ void say_sides(const std::vector<std::string>& paths, const std::vector<Mesh>& m
           (meshes[i].sensor ? ", as the file says" : ", by the side of its faces or normals"));
     if (!front || *front >= 0.5) continue;
     say("warning: " + paths[i] + ": the sensor sees the back of " + fixed(100 * (1 - *front), 0) +
-        " % of the faces or normals in the file, by which it " + in_words(view_side(meshes[i])));
+        " % of the faces or normals in the file" +
+        (meshes[i].sensor ? "" : ", by which it " + in_words(view_side(meshes[i]))));
   }
 }
 
@@ -66,6 +69,11 @@ int align(const Settings& settings) {
   std::vector<std::string> inputs = settings.views, outputs = {settings.output + "/pairs.csv"};
   inputs.push_back(settings.poses);
   for (const std::string& name : names) outputs.push_back(settings.output + "/" + name + ".xf");
+  if (!settings.poses.empty())
+    for (const std::string& pose : pose_names(settings.poses)) inputs.push_back(pose);
+  std::error_code none;
+  for (const auto& old : std::filesystem::directory_iterator(settings.output + "/poses", none))
+    outputs.push_back(old.path().string());
   keep_inputs(inputs, outputs);
   std::vector<Mesh> meshes;
   for (const std::string& path : settings.views) meshes.push_back(read_input(path));
@@ -95,10 +103,9 @@ int align(const Settings& settings) {
   if (parts > 1)
     say("note: the views form " + std::to_string(parts) + " unconnected parts; each has the frame of its first view");
   if (parts == views.size())
-    say("hint: no two views were connected: where the sensor stood decides on the side of the surfaces and on what "
-        "hides "
-        "what; tell it with --sensor or --direction" +
-        std::string(sensor ? ", which may be the opposite" : ""));
+    say("hint: no two views were connected: the result depends on where the sensor stood; give --sensor or "
+        "--direction" +
+        std::string(sensor ? ", or try the opposite one" : ""));
   if (!aligned.converged) say("note: the pose graph did not converge");
   return kOk;
 }

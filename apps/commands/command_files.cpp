@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code unknown;
   if (fs::equivalent(a, b, unknown)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, unknown), whole_b = fs::weakly_canonical(b, unknown);
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a), unknown),
+                 whole_b = fs::weakly_canonical(fs::absolute(b), unknown);
   return !whole_a.empty() && whole_a == whole_b;
 }
 
@@ -45,6 +46,10 @@ Mesh read_input(const std::string& path, bool drop_stray) {
 }
 
 void keep_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    for (std::size_t other = 0; other < i; ++other)
+      if (!outputs[i].empty() && !outputs[other].empty() && is_same_file(outputs[i], outputs[other]))
+        throw UsageError(outputs[i] + ": is named for two outputs, expected a file for each");
   for (const std::string& output : outputs)
     for (const std::string& name : inputs) {
       const std::string input = split_transform_name(name).file;  // of poses a key may follow

@@ -114,7 +114,7 @@ void add_u3m(CLI::App& import, Action& action) {
       "  corral dataset import u3m ~/u3m/views -o data/u3m --truth ~/u3m/gt");
   command->callback([settings, &action] {
     action = [settings]() -> int {
-      settings->options.sensor = view_options(settings->sensor);
+      if (settings->sensor.are_given()) settings->options.sensor = view_options(settings->sensor);
       settings->options.parallel = workers(settings->threads);
       std::vector<std::string> notes;
       {

@@ -26,6 +26,13 @@ struct Settings {
 
 constexpr std::size_t kMostWarnings = 5;
 
+/// As warnings; the study has them all.
+void say_some(const std::string& kind, const std::vector<std::string>& lines) {
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostWarnings); ++i) say("warning: " + kind + lines[i]);
+  if (lines.size() > kMostWarnings)
+    say("warning: " + std::to_string(lines.size() - kMostWarnings) + " more of this kind; --json lists all");
+}
+
 /// What is shown of a grouper in an experiment: the mean of its levels.
 struct Overview {
   int levels = 0, pairs = 0, excluded = 0, misfit = 0, empty = 0, failed = 0;
@@ -105,16 +112,14 @@ int evaluate_pairs(const Settings& settings, const WorkList& list) {
                     std::to_string(now.failed) + " failed");
   });
   progress.reset();
-  for (std::size_t i = 0; i < std::min(outcome.misfits.size(), kMostWarnings); ++i)
-    say("warning: truth does not fit: " + outcome.misfits[i]);
-  if (outcome.misfits.size() > kMostWarnings)
-    say("warning: the truths of " + std::to_string(outcome.misfits.size() - kMostWarnings) +
-        " more pairs do not fit (column truth of records.csv)");
+  say_some("truth does not fit: ", outcome.misfits);
+  say_some("", outcome.warnings);
   if (settings.json) {
     put("", Json{{"run", settings.study.run},
                  {"pairs", outcome.units},
                  {"failed", outcome.failed},
-                 {"misfits", outcome.misfits}});
+                 {"misfits", outcome.misfits},
+                 {"warnings", outcome.warnings}});
   } else {
     put("", overview_text(outcome.summary));
     const std::string causes = outcome.failed > 0 ? " (records.csv says why)" : "";

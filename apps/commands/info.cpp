@@ -31,7 +31,7 @@ void add_warnings(MeshInfo& info) {
   };
   if (info.normals == NormalGuide::Origin)
     info.warnings.push_back(
-        "no faces, normals or sensor in the file: the normals of the cloud will point to the origin; 'corral "
+        "no faces, normals or sensor were read: the normals of the cloud will point to the origin; 'corral "
         "triangulate' gives faces to a range scan");
   warn(info.topology.duplicate_vertices, "duplicate vertices: they count once for pr");
   warn(info.topology.isolated_vertices, "vertices without a face");

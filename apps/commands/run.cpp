@@ -8,6 +8,7 @@
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/explain.h"
 #include "apps/pair/match_report.h"
+#include "apps/pair/normal_sides.h"
 #include "apps/pair/report_pair.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/pair/truth_fit.h"
@@ -61,6 +62,7 @@ struct PairRun {
   std::vector<bool> labels;                  ///< with a truth: which matches are correct
   std::optional<FrameRepeatability> frames;  ///< with a truth
   std::optional<TruthFit> fit;               ///< with a truth
+  std::optional<double> opposed_share;       ///< of normals, with a truth by which the pair is lost before the grouping
   PairCounts counts;                         ///< with --explain
   std::vector<Explanation> explanations;     ///< with --explain: of the pair, then of each grouper
 
@@ -97,12 +99,13 @@ Json to_json(const PairRun& run, const Settings& settings) {
                {"matches", run.pair.matches.size()},
                {"true_matches", json_or_null(run.true_matches())},
                {"truth_fit", run.fit ? corral::to_json(*run.fit) : Json(nullptr)},
-               {"warnings", run.pair.report.warnings},
+               {"warnings", warnings_of(run.pair.report)},
                {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
                {"methods", methods},
                {"bounds", run.truth ? bounds : Json(nullptr)},
                {"details",
                 {{"matching", corral::to_json(settings.match)},
+                 {"drop_stray", settings.drop_stray},
                  {"threshold_pr", settings.threshold_pr},
                  {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
                  {"repeat", settings.repeat},
@@ -151,26 +154,30 @@ void write_folder(const PairRun& run, const Settings& settings) {
   }
 }
 
-/// How far the normals of the surfaces agree under the truth.
-std::optional<double> opposed_share(const Mesh& source, const Mesh& target, const PairRun& run,
-                                    const MatchSettings& settings) {
-  const ParallelFor parallel = workers(settings.threads);
-  const Points source_normals = estimate_normals(source, settings.normal_options(), parallel);
-  const Points target_normals = estimate_normals(target, settings.normal_options(), parallel);
-  return opposed_share({source.vertices, source_normals}, {target.vertices, target_normals}, PointTree(target.vertices),
-                       run.truth->target_from_source, run.pair.report.resolution);
+/// Why the truth does not fit; surfaces in different units come first.
+std::string misfit_of(const PairRun& run) {
+  const std::string& units = run.pair.report.units;
+  return (units.empty() ? "" : units + "; ") + run.fit->text();
 }
 
-void explain(PairRun& run, const Mesh& source, const Mesh& target, const MatchSettings& settings) {
+void explain(PairRun& run, const Mesh& target) {
   const CorrespondenceSet& matches = run.pair.matches;
   const Points seen =
       points_in_overlap(matches.source_points, target, run.truth->target_from_source, matches.resolution);
   run.counts = {matches.size(), static_cast<int>(seen.rows()), *run.true_matches(), run.truth->threshold_pr};
-  if (!run.fit->belongs()) run.counts.misfit = run.fit->text();
-  run.counts.opposed_share = opposed_share(source, target, run, settings);
+  if (!run.fit->belongs()) run.counts.misfit = misfit_of(run);
+  run.counts.opposed_share = run.opposed_share;
   run.counts.source_side = to_text(run.pair.report.source.normals);
   run.counts.target_side = to_text(run.pair.report.target.normals);
   run.explanations = explain_pair(run.counts, run.bounds[0], run.records);
+}
+
+/// Opposed normals are a likely cause where all correct matches do not register the pair.
+void compare_sides(PairRun& run, const Mesh& source, const Mesh& target, const MatchSettings& settings) {
+  if (!run.fit->belongs() || is_registered(run.bounds[0].errors)) return;
+  run.opposed_share =
+      opposed_normals(source, target, run.truth->target_from_source, run.pair.report.resolution, settings);
+  if (is_opposed(run.opposed_share)) run.pair.report.warnings.push_back(opposed_warning(*run.opposed_share));
 }
 
 PairRun evaluate(const Settings& settings) {
@@ -194,7 +201,8 @@ PairRun evaluate(const Settings& settings) {
         pair_truth(source, target, run.truth->target_from_source, run.pair.report.resolution, settings.threshold_pr);
     const MatchReport& report = run.pair.report;
     run.fit = fit_truth(source, target, run.truth->target_from_source, report.source.spacing, report.target.spacing);
-    if (!run.fit->belongs()) run.pair.report.warnings.push_back("truth does not fit: " + run.fit->text());
+    if (run.fit->belongs()) run.pair.report.units.clear();  // then the sizes are what they are
+    if (!run.fit->belongs()) run.pair.report.warnings.push_back("truth does not fit: " + misfit_of(run));
     run.labels = label_correct(run.pair.matches, run.truth->target_from_source, run.truth->threshold_pr);
     run.frames = frame_repeatability(run.pair.matches, run.truth->target_from_source, run.labels);
   }
@@ -203,14 +211,17 @@ PairRun evaluate(const Settings& settings) {
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
   }
-  if (run.truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
+  if (run.truth) {
+    run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
+    compare_sides(run, source, target, settings.match);
+  }
   if (settings.dense) {
     progress.begin("dense refinement");
     DenseRefinement dense(source, target, run.pair.report.resolution, workers(settings.match.threads));
     dense.refine(run.records, run.truth);
     dense.refine(run.bounds, run.truth);
   }
-  if (settings.explain) explain(run, source, target, settings.match);
+  if (settings.explain) explain(run, target);
   return run;
 }
 

@@ -5,6 +5,7 @@
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/report_pair.h"
+#include "apps/pair/surface_warnings.h"
 #include "apps/pair/truth_fit.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
@@ -26,8 +27,10 @@ MethodRecord judge_fit(const CorrespondenceSet& matches, const GroupTable& group
   PairTruth truth{read_truth(settings.truth), {}, settings.threshold_pr};
   if (!settings.source.empty()) {
     const Mesh source = read_input(settings.source), target = read_input(settings.target);
-    const TruthFit fit = fit_truth(source, target, truth.target_from_source, point_spacing(source.vertices),
-                                   point_spacing(target.vertices));
+    const PointSpacing from = point_spacing(source.vertices), to = point_spacing(target.vertices);
+    for (const std::string& warning : surface_warnings(source, from)) say("warning: source: " + warning);
+    for (const std::string& warning : surface_warnings(target, to)) say("warning: target: " + warning);
+    const TruthFit fit = fit_truth(source, target, truth.target_from_source, from, to);
     if (!fit.belongs()) say("warning: truth does not fit: " + fit.text());
     truth = pair_truth(source, target, truth.target_from_source, matches.resolution, settings.threshold_pr);
   }

@@ -10,6 +10,7 @@
 #include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
+#include "kernel/number_text.h"
 #include "kernel/surface/mesh/perturbation.h"
 
 namespace corral {
@@ -54,6 +55,14 @@ Json in_json(const RigidTransform& transform) {
           {"translation_length", t.norm()}};
 }
 
+void write_moved(const Settings& settings, const RigidTransform& target_from_source) {
+  const Mesh moved = move_mesh(read_input(settings.mesh), target_from_source);
+  write_mesh(settings.output, moved);
+  if (moved.sensor)
+    say("note: " + settings.output + ": PLY has no place for that of the sensor, which is now " +
+        to_text(moved.sensor->x()) + "," + to_text(moved.sensor->y()) + "," + to_text(moved.sensor->z()));
+}
+
 int transform(const Settings& settings) {
   if (!settings.mesh.empty() && settings.output.empty()) throw UsageError("--apply: needs --output, a PLY file");
   check_output(settings);
@@ -66,7 +75,7 @@ int transform(const Settings& settings) {
     }
   };
   if (!settings.mesh.empty())
-    write_mesh(settings.output, move_mesh(read_input(settings.mesh), target_from_source));
+    write_moved(settings, target_from_source);
   else if (!settings.output.empty() || !settings.json)
     put(settings.output, text());
   if (settings.json) put("", in_json(target_from_source));

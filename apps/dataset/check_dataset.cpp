@@ -49,8 +49,11 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   find(swept.pair.truth, swept.truth_problem);
   notes.is_complete = swept.is_complete();
   if (!notes.is_complete) return notes;
-  for (const auto& [file, side] : {std::pair{&swept.pair.source, &swept.source}, {&swept.pair.target, &swept.target}})
+  for (const auto& [file, side] : {std::pair{&swept.pair.source, &swept.source}, {&swept.pair.target, &swept.target}}) {
+    for (const std::string& note : side->mesh.notes) find(*file, note, false);
     for (const std::string& warning : surface_warnings(side->mesh, side->spacing)) find(*file, warning);
+  }
+  for (const std::string& note : swept.truth_notes) find(swept.pair.truth, note, false);
   const Points &source = swept.source.mesh.vertices, &target = swept.target.mesh.vertices;
   const double source_extent = bounding_box(source).diagonal(), target_extent = bounding_box(target).diagonal();
   notes.source_content = swept.source.content;

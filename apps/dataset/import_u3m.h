@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct ImportU3mOptions {
   std::string output;  ///< folder of the set
   std::string truth;   ///< folder of published transforms; empty: the truth is computed by aligning the views
   std::string object;  ///< the object that all views show; empty: their names without the final number
-  ViewOptions sensor;  ///< of every view
+  std::optional<ViewOptions> sensor;  ///< of every view; else that of view_side for each
   AlignOptions align;
   double least_overlap = 0.3, most_overlap = 0.9;  ///< of the pairs that are kept
   ParallelFor parallel = one_by_one;

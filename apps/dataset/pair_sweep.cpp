@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -48,12 +47,15 @@ SweptSurface load(const std::string& path) {
 
 SweptPair complete(const Dataset& dataset, const DatasetPair& pair, const SweptSurface& source,
                    const SweptSurface& target) {
-  SweptPair swept{pair, source, target, std::nullopt, ""};
+  SweptPair swept{pair, source, target, std::nullopt, "", {}};
   const std::string path = dataset.path(pair.truth);
   try {
-    if (!pair.truth.empty()) swept.truth = read_transform(path);
+    if (pair.truth.empty()) return swept;
+    StoredTransform truth = read_transform(path);
+    swept.truth_notes = std::move(truth.notes);
+    swept.truth = truth;
   } catch (const IoError& error) {
-    swept.truth_problem = without_path(error.what(), path);
+    swept.truth_problem = without_path(error.what(), split_transform_name(path).file);
   }
   return swept;
 }

@@ -7,6 +7,7 @@
 
 #include "apps/runtime/progress.h"
 #include "io/dataset_file.h"
+#include "io/mesh_file.h"
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh/mesh.h"
@@ -18,7 +19,7 @@ namespace corral {
 /// A mesh of a data set, or why it cannot be used.
 struct SweptSurface {
   std::string problem;  ///< empty if the rest can be used
-  Mesh mesh;
+  StoredMesh mesh;
   std::optional<PointTree> tree;
   double resolution = 0;    ///< its own, mesh units per pr
   PointSpacing spacing;     ///< what that is the mean of
@@ -29,7 +30,8 @@ struct SweptPair {
   const DatasetPair& pair;
   const SweptSurface &source, &target;
   std::optional<RigidTransform> truth;
-  std::string truth_problem;  ///< why the named one cannot be used
+  std::string truth_problem;             ///< why the named one cannot be used
+  std::vector<std::string> truth_notes;  ///< what its reader has to say
 
   bool is_complete() const { return source.problem.empty() && target.problem.empty(); }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/explain.h"
 
+#include "apps/pair/normal_sides.h"
 #include "apps/runtime/text_table.h"
 #include "kernel/number_text.h"
 
@@ -10,7 +11,6 @@ namespace {
 constexpr int kFewKeypoints = 20;
 constexpr int kLeastRows = 3;  ///< that determine a pose
 constexpr double kLeastPrecision = 0.5;
-constexpr double kOpposed = 0.5;
 
 std::string pr(double value) { return fixed(value, value < 10 ? 2 : 1) + " pr"; }
 
@@ -43,7 +43,7 @@ std::string dense_of(const MethodRecord& record) {
 Cause cause_of_pair(const PairCounts& counts, const MethodRecord& oracle) {
   if (!counts.misfit.empty()) return Cause::TruthDoesNotFit;
   if (is_registered(oracle.errors)) return Cause::Found;
-  if (counts.opposed_share && *counts.opposed_share > kOpposed) return Cause::NormalsOpposed;
+  if (is_opposed(counts.opposed_share)) return Cause::NormalsOpposed;
   return counts.keypoints_in_overlap < kFewKeypoints ? Cause::TooFewKeypoints : Cause::TooFewTrueMatches;
 }
 
@@ -80,8 +80,9 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
   if (cause == Cause::NormalsOpposed)
     return "lost before the grouping: the normals of the source (" + counts.source_side + ") and of the target (" +
            counts.target_side + ") point to opposite sides on " + fixed(100 * *counts.opposed_share, 0) +
-           " % of the overlap: one of them is flipped; name the place of the sensor with --sensor, or turn the "
-           "faces; " +
+           " % of the overlap, and descriptors of opposite sides do not match: give the place of the sensor with "
+           "--sensor, "
+           "or turn the faces of one; " +
            matches;
   if (cause == Cause::TooFewKeypoints)
     return "lost before the grouping: " + keypoints + ", and of fewer than " + std::to_string(kFewKeypoints) +

@@ -146,17 +146,16 @@ std::string length_hint(const MatchReport& report, const std::string& algorithm,
 double resolution_of_pair(const MatchReport& report, const MatchSettings& settings) {
   std::string strays;
   for (const auto& [name, side] : {std::pair{"source", &report.source}, {"target", &report.target}}) {
-    const std::string warning = stray_warning(side->spacing, side->points);
-    if (!warning.empty()) strays += std::string("; the ") + name + " has a " + warning;
+    const std::string warning = stray_warning(side->spacing);
+    if (!warning.empty()) strays += std::string("; ") + name + ": " + warning;
   }
   return pair_resolution(settings.resolution, report.source.resolution, report.target.resolution, strays);
 }
 
 void warn_of_units(const Mesh& source, const Mesh& target, MatchReport& report) {
   if (!report.source.spacing.strays.empty() || !report.target.spacing.strays.empty()) return;  // extents say nothing
-  const std::string units = unit_warning(size_of(source.vertices, report.source.resolution),
-                                         size_of(target.vertices, report.target.resolution));
-  if (!units.empty()) report.warnings.push_back(units);
+  report.units = unit_warning(size_of(source.vertices, report.source.resolution),
+                              size_of(target.vertices, report.target.resolution));
 }
 
 void add_hints(const MatchReport& report, const MatchSettings& settings, std::vector<std::string>& hints) {

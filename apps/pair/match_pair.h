@@ -45,6 +45,7 @@ struct MatchReport {
   int matches = 0;
   std::vector<StageCost> stages;
   std::vector<std::string> warnings;  ///< of data that make results wrong
+  std::string units;                  ///< why the sides may be in different units; empty if nothing speaks for it
   std::vector<std::string> hints;     ///< advice on counts that are zero and on normals
 };
 

@@ -68,12 +68,18 @@ Json to_json(const MatchReport& report) {
   for (const UsedLength& length : report.lengths) lengths[length.name] = length.pr * report.resolution;
   return {{"resolution", report.resolution},  {"lengths", lengths},        {"source", to_json(report.source)},
           {"target", to_json(report.target)}, {"matches", report.matches}, {"stages", stages},
-          {"warnings", report.warnings},      {"hints", report.hints}};
+          {"warnings", warnings_of(report)},  {"hints", report.hints}};
+}
+
+std::vector<std::string> warnings_of(const MatchReport& report) {
+  std::vector<std::string> warnings = report.warnings;
+  if (!report.units.empty()) warnings.push_back(report.units);
+  return warnings;
 }
 
 std::vector<std::string> advice(const MatchReport& report) {
   std::vector<std::string> lines;
-  for (const std::string& warning : report.warnings) lines.push_back("warning: " + warning);
+  for (const std::string& warning : warnings_of(report)) lines.push_back("warning: " + warning);
   for (const std::string& hint : report.hints) lines.push_back("hint: " + hint);
   return lines;
 }

@@ -96,9 +96,9 @@ double pair_resolution(const std::string& rule, double source, double target, co
   if (rule == "mean") {
     const double ratio = std::max(source, target) / std::min(source, target);
     if (!(ratio <= kLargestRatio))
-      throw InvalidInput("match", "--resolution",
-                         to_text(source) + " on the source and " + to_text(target) + " on the target",
-                         "both in the same unit, or --resolution with the one to use" + remark);
+      throw InvalidInput("match", "pr", to_text(source) + " on the source and " + to_text(target) + " on the target",
+                         "both in the same unit (units differ by a factor of " + to_text(std::round(ratio)) +
+                             ", if the surfaces are alike), or one that --resolution sets" + remark);
     return (source + target) / 2;
   }
   return as_length(rule).value();

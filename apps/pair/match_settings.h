@@ -12,7 +12,7 @@
 
 namespace corral {
 
-/// How one pair of surfaces becomes a table of matches. Defaults: the paper's.
+/// How one pair of surfaces becomes a table of matches. Defaults: the paper's, but for the side of the normals (there Origin).
 struct MatchSettings {
   std::string resolution = "mean";  ///< pr of the pair: mean|source|target of the two, or a length in mesh units
   std::string detector = "harris", descriptor = "shot";  ///< names in their tables

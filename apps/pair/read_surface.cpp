@@ -14,7 +14,9 @@ StoredMesh read_surface(const std::string& path) {
   const double diagonal = bounding_box(mesh.vertices).diagonal();
   if (!std::isfinite(diagonal))
     throw IoError(path, "", "its coordinates are too large for distances, expected an extent whose square is finite");
-  if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface");
+  std::string notes;
+  for (const std::string& note : mesh.notes) notes += "; " + note;
+  if (mesh.vertices.rows() == 0) throw IoError(path, "", "has no vertices, expected a surface" + notes);
   if (!(diagonal > 0))
     throw IoError(path, "",
                   "all its " + std::to_string(mesh.vertices.rows()) + " vertices coincide, expected " +

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStepPr = 0.1;  // rounding to such a step is noise of 0.03 pr
 constexpr double kPowers[] = {10, 100, 1000};
-constexpr double kLeastFactor = 1.7, kAlike = 1.15;
+constexpr double kLeastFactor = 1.7, kAlike = 1.08;
 
 std::string three_digits(double number) {
   char text[32];
@@ -53,21 +53,21 @@ bool is_told(NormalGuide guide) { return guide != NormalGuide::Origin; }
 
 }  // namespace
 
-std::string stray_warning(const PointSpacing& spacing, int vertices) {
-  if (!spacing.is_moved_by_strays(vertices)) return "";
+std::string stray_warning(const PointSpacing& spacing) {
+  if (!spacing.is_moved_by_strays()) return "";
   const std::size_t count = spacing.strays.size();
   const std::string which = count == 1 ? "stray point: vertex " + std::to_string(spacing.strays.front()) + " lies "
                                        : "stray points: vertex " + std::to_string(spacing.strays.front()) + " and " +
                                              std::to_string(count - 1) + " more lie up to ";
   return which + three_digits(spacing.stray_distance / spacing.median) +
          " times the median spacing from all others; pr is " + three_digits(spacing.resolution) + " with and " +
-         three_digits(spacing.without_strays) + " without " + (count == 1 ? "it" : "them") + ": leave " +
-         (count == 1 ? "it" : "them") + " out with --drop-stray, or set --resolution";
+         three_digits(spacing.without_strays) + " without " + (count == 1 ? "it" : "them") +
+         ": --drop-stray of 'match' and 'run' leaves " + (count == 1 ? "it" : "them") + " out, --resolution sets pr";
 }
 
 std::vector<std::string> surface_warnings(const Mesh& mesh, const PointSpacing& spacing) {
   std::vector<std::string> warnings;
-  const std::string stray = stray_warning(spacing, static_cast<int>(mesh.vertices.rows()));
+  const std::string stray = stray_warning(spacing);
   if (!stray.empty()) warnings.push_back(stray);
   const double step = float_step(mesh.vertices);
   if (step >= kStepPr * spacing.without_strays)
@@ -86,7 +86,7 @@ SurfaceSize size_of(const Points& vertices, double resolution) {
 std::string unit_warning(const SurfaceSize& source, const SurfaceSize& target) {
   const double extent_ratio = target.extent / source.extent, resolution_ratio = target.resolution / source.resolution;
   if (!is_power_of_ten(extent_ratio, resolution_ratio) && !is_same_factor(extent_ratio, resolution_ratio)) return "";
-  return "wrong units: the target's pr is " + fixed(resolution_ratio, 3) + " times the source's, its extent " +
+  return "units may differ: the target's pr is " + fixed(resolution_ratio, 3) + " times the source's, its extent " +
          fixed(extent_ratio, 3) + " times";
 }
 
@@ -110,8 +110,9 @@ std::string normal_hint(NormalGuide source, NormalGuide target) {
   if (is_told(source) == is_told(target)) return "";
   const std::string lost = is_told(source) ? "target" : "source", told = is_told(source) ? "source" : "target";
   return "the normals of the " + lost + " point " + to_text(NormalGuide::Origin) +
-         ", as its file tells no side, those of the " + told + " " + to_text(is_told(source) ? source : target) +
-         ": where these are opposite sides no match is correct; --sensor x,y,z tells where the sensor stood";
+         ", because its file does not say which side is outside, those of the " + told + " " +
+         to_text(is_told(source) ? source : target) +
+         ": if these are opposite sides, no match is correct; give the place of the sensor with --sensor x,y,z";
 }
 
 Mesh without_vertices(const Mesh& mesh, const Indices& dropped) {

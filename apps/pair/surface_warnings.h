@@ -19,7 +19,7 @@ namespace corral {
 std::vector<std::string> surface_warnings(const Mesh& mesh, const PointSpacing& spacing);
 
 /// The first of these; empty if pr is sound.
-std::string stray_warning(const PointSpacing& spacing, int vertices);
+std::string stray_warning(const PointSpacing& spacing);
 
 /// The size of a surface by two measures, mesh units.
 struct SurfaceSize {
@@ -29,7 +29,7 @@ struct SurfaceSize {
 SurfaceSize size_of(const Points& vertices, double resolution);
 
 /// Whether two surfaces are in different units, as far as sizes tell: extents may differ in a cluttered scene, resolutions in
-/// a thinned one, but hardly both by the same power of ten, nor both by the same other factor within 15 %. Empty if not.
+/// a thinned one, but hardly both by the same power of ten, nor both by the same other factor within 8 %. Empty if not.
 std::string unit_warning(const SurfaceSize& source, const SurfaceSize& target);
 
 /// Where it makes normals point: "by the faces", "by the normals of the file", "towards the sensor", "towards the sensor of

@@ -14,7 +14,7 @@ constexpr double kLeastShare = 0.02;  // below: contacts by chance
 constexpr double kMostOfAll = 0.5;    // enough where a turn changes nothing, as on a sphere
 constexpr double kBelongs = 1.05;     // distinctness of a truth; wrong ones reach 1.5 now and then
 constexpr double kConvinces = 2;      // that of what would be right instead
-constexpr double kFactors[] = {0.001, 1000, 0.01, 100, 0.1, 10};
+constexpr double kFactors[] = {0.001, 1000, 0.01, 100, 0.1, 10, 25.4, 1 / 25.4};
 
 /// Evenly over the rows.
 Points some_of(const Points& points) {
@@ -68,9 +68,11 @@ std::string TruthFit::name() const {
     case Loose:
       return "loose";
     case Inverted:
-      return "inverted";
+      return factor == 1 ? "inverted" : "inverted, translation times " + to_text(factor);
     case OtherUnits:
       return "translation times " + to_text(factor);
+    case Transposed:
+      return "transposed";
     case Misplaced:
       break;
   }
@@ -85,15 +87,19 @@ std::string TruthFit::text() const {
     case Loose:
       return "the truth fits loosely: " + in_words(given);
     case Inverted:
-      return "the truth fits inverted: " + in_words(mended) + "; " + as_given;
+      return "the truth fits inverted" +
+             (factor == 1 ? "" : ", with its translation multiplied by " + to_text(factor)) + ": " + in_words(mended) +
+             "; " + as_given;
     case OtherUnits:
       return "wrong units: the truth fits if its translation is multiplied by " + to_text(factor) + ": " +
              in_words(mended) + "; " + as_given;
+    case Transposed:
+      return "the truth fits if its rotation is transposed: " + in_words(mended) + "; " + as_given;
     case Misplaced:
       break;
   }
   return "the truth fits neither as given (" + in_words(given) +
-         ") nor inverted nor in other units: it is that of another pair, or the surfaces do not overlap";
+         ") nor inverted, transposed or in other units: it is that of another pair, or the surfaces hardly overlap";
 }
 
 TruthFit fit_truth(const Points& points, const Points& surface, const PointTree& tree_of_surface,
@@ -111,9 +117,17 @@ TruthFit fit_truth(const Points& points, const Points& surface, const PointTree&
     return mended.has_value();
   };
   if (instead(TruthFit::Inverted, 1, truth.inverse())) return found;
+  const auto transposed = [](const RigidTransform& motion) {
+    return RigidTransform{motion.rotation.transpose(), motion.translation};
+  };
+  if (instead(TruthFit::Transposed, 1, transposed(truth))) return found;
+  if (instead(TruthFit::Transposed, 1, transposed(truth.inverse()).inverse())) return found;  // asked from the target
   if (given.share >= kLeastShare && (distinct >= kBelongs || given.near_share >= kMostOfAll)) return found;
-  for (const double factor : kFactors)
-    if (instead(TruthFit::OtherUnits, factor, {truth.rotation, factor * truth.translation})) return found;
+  for (const double factor : kFactors) {
+    const RigidTransform scaled{truth.rotation, factor * truth.translation};
+    if (instead(TruthFit::OtherUnits, factor, scaled)) return found;
+    if (instead(TruthFit::Inverted, factor, scaled.inverse())) return found;
+  }
   found.verdict = TruthFit::Misplaced;
   return found;
 }
@@ -133,7 +147,7 @@ Json to_json(const TruthFit& fit) {
                {"share_within_2pr", fit.given.share},
                {"median_pr", json_or_null(fit.given.median_pr)},
                {"text", fit.text()}};
-  if (fit.verdict == TruthFit::Inverted || fit.verdict == TruthFit::OtherUnits)
+  if (fit.mended.median_pr)
     json["instead"] = {{"share_within_2pr", fit.mended.share}, {"median_pr", json_or_null(fit.mended.median_pr)}};
   return json;
 }

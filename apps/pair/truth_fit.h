@@ -15,8 +15,9 @@ struct TruthFit {
   enum Verdict {
     Fits,
     Loose,       ///< the surfaces lie 1 to 2 pr apart, as those of real scanners may
-    Inverted,    ///< the inverse fits
+    Inverted,    ///< the inverse fits, or with its translation times `factor`
     OtherUnits,  ///< it fits with its translation times `factor`
+    Transposed,  ///< it fits with its rotation transposed
     Misplaced,   ///< nothing of this fits: another pair's truth, or surfaces that do not overlap
   };
   Verdict verdict = Fits;
@@ -29,7 +30,8 @@ struct TruthFit {
   /// The verdict with its numbers, for a message; empty if the truth fits.
   std::string text() const;
 
-  /// "fits", "loose", "inverted", "translation times 0.001" or "misplaced".
+  /// "fits", "loose", "inverted", "translation times 0.001", "inverted, translation times 0.001", "transposed" or
+  /// "misplaced".
   std::string name() const;
   static bool is_belonging(const std::string& name) { return name == "fits" || name == "loose"; }
 };

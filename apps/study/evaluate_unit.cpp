@@ -7,7 +7,9 @@
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
+#include "apps/pair/normal_sides.h"
 #include "apps/pair/read_surface.h"
+#include "apps/pair/surface_warnings.h"
 #include "apps/pair/truth_fit.h"
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
@@ -77,13 +79,16 @@ class PairStudy {
         target_(read_surface(unit_.pair.target)),
         stored_(unit_matches(work, source_, target_)),
         matches_(stored_.matches) {
+    const PointSpacing source = point_spacing(source_.vertices), target = point_spacing(target_.vertices);
+    for (const std::string& warning : surface_warnings(source_, source)) warnings_.push_back("source: " + warning);
+    for (const std::string& warning : surface_warnings(target_, target)) warnings_.push_back("target: " + warning);
     if (unit_.pair.truth.empty()) return;
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
-    fit_ = fit_truth(source_, target_, truth_->target_from_source, point_spacing(source_.vertices),
-                     point_spacing(target_.vertices));
+    fit_ = fit_truth(source_, target_, truth_->target_from_source, source, target);
     for (const double threshold : unit_.thresholds_pr)
       labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
+    warn_of_sides();
   }
 
   UnitResult evaluate() {
@@ -98,6 +103,7 @@ class PairStudy {
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
     if (fit_) result.truth = fit_->name(), result.truth_text = fit_->text();
+    result.warnings = warnings_;
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
     if (unit_.dense) {
       DenseRefinement dense(source_, target_, matches_.resolution);
@@ -139,6 +145,17 @@ class PairStudy {
   }
 
  private:
+  /// Where hardly any match is correct, opposed normals are a likely cause, and worth their time.
+  void warn_of_sides() {
+    const auto most = std::max_element(unit_.thresholds_pr.begin(), unit_.thresholds_pr.end());
+    const std::vector<bool> labels = label_correct(matches_, truth_->target_from_source, *most);
+    constexpr int kHardlyAny = 3;
+    if (!fit_->belongs() || std::count(labels.begin(), labels.end(), true) >= kHardlyAny) return;
+    const auto opposed =
+        opposed_normals(source_, target_, truth_->target_from_source, matches_.resolution, unit_.matching);
+    if (is_opposed(opposed)) warnings_.push_back(opposed_warning(*opposed));
+  }
+
   /// The oracle of every threshold, then the baseline.
   std::vector<MethodRecord> evaluate_all_bounds() const {
     std::vector<MethodRecord> bounds, last;
@@ -183,6 +200,7 @@ class PairStudy {
   const CorrespondenceSet& matches_;
   std::optional<PairTruth> truth_;
   std::optional<TruthFit> fit_;
+  std::vector<std::string> warnings_;
   std::vector<std::vector<bool>> labels_;  ///< at each threshold
   std::vector<MethodRecord> records_;      ///< one for each task
 };

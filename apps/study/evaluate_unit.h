@@ -30,6 +30,7 @@ struct UnitResult {
   int matches = 0;
   bool has_truth = false;
   std::string truth, truth_text;                   ///< TruthFit::name and text; empty without a truth
+  std::vector<std::string> warnings;               ///< of data that make results wrong
   std::vector<int> true_matches;                   ///< at each threshold
   std::vector<std::optional<double>> frame_share;  ///< at each threshold
   std::vector<TaskResult> tasks;                   ///< one each

@@ -58,21 +58,23 @@ bool fits(const UnitResult& result, const WorkUnit& unit) {
          (!result.baseline || is_whole(*result.baseline));
 }
 
-/// Evaluates the units of a study and writes their files.
-/// Each pair once, in the order of the units.
-std::vector<std::string> misfits_of(const WorkList& list, const std::vector<UnitResult>& results) {
-  std::vector<std::string> misfits;
+/// What is wrong with the data of the pairs, each pair once, in the order of the units.
+void add_warnings(const WorkList& list, const std::vector<UnitResult>& results, StudyOutcome& outcome) {
   std::set<std::string> named;
   for (std::size_t unit = 0; unit < results.size(); ++unit) {
+    const DatasetPair& pair = list.units[unit].pair;
     const std::string& verdict = results[unit].truth;
-    if (verdict.empty() || TruthFit::is_belonging(verdict)) continue;
-    const std::string& truth = list.units[unit].pair.truth;
-    if (named.insert(truth + " " + list.units[unit].pair.name).second)
-      misfits.push_back("pair " + list.units[unit].pair.name + ", " + truth + ": " + results[unit].truth_text);
+    const auto add = [&](const std::string& text, std::vector<std::string>& lines) {
+      const std::string line = "pair " + pair.name + ": " + text;
+      if (named.insert(pair.truth + " " + line).second) lines.push_back(line);
+    };
+    if (!verdict.empty() && !TruthFit::is_belonging(verdict))
+      add(pair.truth + ": " + results[unit].truth_text, outcome.misfits);
+    for (const std::string& warning : results[unit].warnings) add(warning, outcome.warnings);
   }
-  return misfits;
 }
 
+/// Evaluates the units of a study and writes their files.
 class Runner {
  public:
   Runner(const WorkList& list, const InputHashes& inputs, const StudySettings& settings,
@@ -177,9 +179,11 @@ StudyOutcome run_study(const WorkList& list, const StudySettings& settings,
   const std::vector<UnitResult> results = Runner(list, inputs, settings, observer).run(settings.jobs);
   StudyFolder run{settings.run, {}, {}, assemble_records(list, results)};
   for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
-  const StudyOutcome outcome{results.size(),
-                             static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed)),
-                             misfits_of(list, results), summarize(experiment_tables(run))};
+  StudyOutcome outcome;
+  outcome.units = results.size();
+  outcome.failed = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), has_failed));
+  outcome.summary = summarize(experiment_tables(run));
+  add_warnings(list, results, outcome);
   write_files({{(folder / "records.csv").string(), records_text(run.records)},
                {(folder / "summary.csv").string(), summary_text(outcome.summary)},
                {manifest, manifest_text(list, inputs, results, settings.command_line)}});

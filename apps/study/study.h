@@ -25,6 +25,7 @@ struct StudyProgress {
 struct StudyOutcome {
   std::size_t units = 0, failed = 0;  ///< units; those where the pair, or a grouper on it, failed
   std::vector<std::string> misfits;   ///< the pairs whose truth does not fit, each with what is wrong
+  std::vector<std::string> warnings;  ///< of other data that make results wrong, with the pair
   std::vector<SummaryRow> summary;
 };
 

@@ -70,6 +70,7 @@ UnitResult unit_of(const Json& json) {
   result.has_truth = json.at("has_truth");
   result.truth = json.at("truth");
   result.truth_text = json.at("truth_text");
+  result.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.true_matches = counts_of(json.at("true_matches"));
   for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
   for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
@@ -93,6 +94,7 @@ std::string unit_result_text(const UnitResult& result) {
               {"has_truth", result.has_truth},
               {"truth", result.truth},
               {"truth_text", result.truth_text},
+              {"warnings", result.warnings},
               {"true_matches", result.true_matches},
               {"frame_share", frames},
               {"tasks", tasks},

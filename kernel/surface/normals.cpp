@@ -23,8 +23,10 @@ Points sides_of(const Mesh& mesh, NormalGuide guide) {
   return guide == NormalGuide::Normals ? mesh.normals : Points();
 }
 
-Eigen::RowVector3d sensor_of(const Mesh& mesh, NormalGuide guide, const NormalOptions& options) {
-  if (guide == NormalGuide::OwnSensor) return mesh.sensor->transpose();
+/// The sensor of the mesh is not among the ways of Mesh and Origin.
+Eigen::RowVector3d sensor_of(const Mesh& mesh, const NormalOptions& options) {
+  const bool may_be_own = options.side == NormalSide::Auto || options.side == NormalSide::File;
+  if (!options.sensor && may_be_own && mesh.sensor) return mesh.sensor->transpose();
   return options.sensor.value_or(Eigen::Vector3d::Zero()).transpose();
 }
 
@@ -32,7 +34,7 @@ Eigen::RowVector3d sensor_of(const Mesh& mesh, NormalGuide guide, const NormalOp
 Points turned(const NearestPlanes& fits, const Mesh& mesh, const PointGrid& grid, const NormalOptions& options) {
   const NormalGuide guide = normal_guide(mesh, options);
   const Points sides = sides_of(mesh, guide);
-  const Eigen::RowVector3d sensor = sensor_of(mesh, guide, options);
+  const Eigen::RowVector3d sensor = sensor_of(mesh, options);
   Points normals(mesh.vertices.rows(), 3);
   for (int slot = 0; slot < grid.size(); ++slot) {
     const int row = grid.row(slot);

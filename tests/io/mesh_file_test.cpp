@@ -48,6 +48,17 @@ TEST(MeshFile, BinaryPlyReadsBackWhatItWrote) {
   EXPECT_EQ(cloud.triangles.rows(), 0);
 }
 
+TEST(MeshFile, NormalsAreWrittenAndReadBack) {
+  Mesh mesh = testing::bumpy_sphere(2, 1);
+  mesh.normals = mesh.vertices.rowwise().normalized();
+  for (const std::string& text : {ply_text(mesh), binary_ply_text(mesh)}) {
+    const Mesh read = parse_ply("x.ply", text);
+    EXPECT_EQ(read.vertices, mesh.vertices);
+    EXPECT_EQ(read.normals, mesh.normals);
+    EXPECT_EQ(read.triangles, mesh.triangles);
+  }
+}
+
 TEST(MeshFile, KnowsTheEndingsThatItReads) {
   for (const char* name : {"a.ply", "x/a.OFF", "a.obj", "a.stl", "a.xyz", "a.pts", "a.b.pcd", "a.ply.gz"})
     EXPECT_TRUE(is_mesh_name(name));

@@ -183,7 +183,7 @@ TEST_P(Pcd, MissingReturnsAreLeftOut) {
   expected << 1, 2, 3, 4, 5, 6;
   EXPECT_EQ(parse_pcd(kPath, file(kNan, kNan, kNan)).vertices, expected);
   EXPECT_EQ(parse_pcd(kPath, file(0, kNan, 0)).vertices, expected) << "one is enough";
-  EXPECT_THAT(parse_pcd(kPath, file(0, kNan, 0)).notes, ElementsAre("1 vertex without a place (nan) was left out"));
+  EXPECT_THAT(parse_pcd(kPath, file(0, kNan, 0)).notes, ElementsAre("1 vertex with a nan coordinate was left out"));
   for (const double bad : {kInfinity, -kInfinity})
     for (int axis = 0; axis < 3; ++axis)
       EXPECT_EQ(refusal(file(axis == 0 ? bad : 0, axis == 1 ? bad : 0, axis == 2 ? bad : 0)),

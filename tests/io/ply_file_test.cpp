@@ -238,6 +238,33 @@ TEST(PlyHeader, NeedsCoordinatesAndCorners) {
   EXPECT_THAT(header(kVertex + replaced(kFace, "uchar int", "uchar float")), HasSubstr("face lacks its corners"));
 }
 
+// Corners would be checked against a number of vertices that have no place.
+TEST(PlyHeader, VerticesWithoutPropertiesAreRefused) {
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\n";
+  EXPECT_THAT(refusal(header + kFace + "end_header\n3 0 1 2\n"), HasSubstr("lacks a coordinate"));
+  EXPECT_THAT(
+      refusal(header + "obj_info num_cols 1\nobj_info num_rows 1\nelement range_grid 1\nproperty list uchar int "
+                       "vertex_indices\nend_header\n1 2\n"),
+      HasSubstr("lacks a coordinate"));
+}
+
+TEST(PlyHeader, ThousandsOfNamesAreRefused) {
+  std::string header = "ply\nformat ascii 1.0\nelement vertex 0\n";
+  for (int i = 0; i < 2000; ++i) header += "property float p" + std::to_string(i) + "\n";
+  EXPECT_THAT(refusal(header + "end_header\n"), HasSubstr("more than 1000 elements and properties"));
+}
+
+TEST(PlyText, FacesOfItsOwnComeBeforeThoseOfTheGrid) {
+  const std::string grid = "element range_grid 4\nproperty list uchar int vertex_indices\n";
+  const std::string rows = "0 0 0\n0 1 2\n0 1 0\n3 0 1 2\n1 0\n1 1\n1 2\n0\n";
+  const StoredMesh mesh = parse_ply(kPath,
+                                    "ply\nformat ascii 1.0\nobj_info num_cols 2\nobj_info num_rows 2\nobj_info "
+                                    "num_cols unknown words\n" +
+                                        kVertex + kFace + grid + "end_header\n" + rows);
+  EXPECT_EQ(mesh.triangles.rows(), 1);
+  EXPECT_THAT(mesh.notes, ::testing::ElementsAre(HasSubstr("the range grid was not read")));
+}
+
 TEST(PlyText, RowsHoldWhatTheHeaderSays) {
   const std::string header = "ply\nformat ascii 1.0\n" + kVertex + "end_header\n0 0 0\n";
   EXPECT_EQ(refusal(header + "\n1 2 3\n4 5 6\n\n"), "");

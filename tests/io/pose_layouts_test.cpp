@@ -150,6 +150,15 @@ TEST(PoseLayouts, QuaternionsAreOfUnitLength) {
   EXPECT_THAT(refusal("1.5 1 2 3 0 0 1e200 1e200\n"), HasSubstr("quaternion: has the length"));
 }
 
+// One row alone would be read the other way.
+TEST(PoseLayouts, RowsOfSevenNumbersHaveOneOrder) {
+  const std::string rows = "0.6 0 0 0.8 1 2 3\n1 0 0 0 1 0 0\n0.8 0.6 0 0 5 5 5\n";
+  const StoredTransform pose = read_text(rows, "1");
+  EXPECT_TRUE(pose.rotation.isIdentity(1e-12));
+  EXPECT_EQ(pose.translation, Eigen::Vector3d(1, 0, 0));
+  EXPECT_THAT(pose.notes, ElementsAre("7 numbers are read as a quaternion w x y z and a translation"));
+}
+
 TEST(PoseLayouts, SevenNumbersAreReadByTheirUnitLengthAndItIsSaid) {
   const RigidTransform turn{Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {1, 2, 3}};
   const StoredTransform last = read_text("1 2 3 0 0 0.70710678 0.70710678\n"),
@@ -252,11 +261,11 @@ TEST(PoseLayouts, BopNamesTheInstanceOfAnImage) {
   EXPECT_EQ(first * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(1, 3, 3));
   EXPECT_EQ(second.translation, Eigen::Vector3d(1, 2.5, 700));
   expect_near(read_text(bop, "3/0,3/1"), second.inverse() * first);
-  EXPECT_THAT(refusal(bop), HasSubstr("has 3 poses, expected FILE:KEY, which names one of '3/0', '3/1', '17/0'"));
+  EXPECT_THAT(refusal(bop), HasSubstr("has 3 poses, expected FILE:KEY, which names one of '17/0', '3/0', '3/1'"));
   EXPECT_THAT(refusal(bop, "17/0"), HasSubstr("pose.txt, 17/0, rotation: not rigid"));
   EXPECT_THAT(refusal(bop, "3/0,17/0"), HasSubstr("cameras of two images"));
   EXPECT_THAT(refusal(bop, "3/2"), HasSubstr("pose 3/2: is not there"));
-  EXPECT_THAT(refusal(replaced(bop, "cam_t_m2c", "t"), "3/0"), HasSubstr("pose.txt, 3/0: has no cam_t_m2c"));
+  EXPECT_THAT(refusal(replaced(bop, "cam_t_m2c", "t"), "3/0"), HasSubstr("pose.txt, 17/0: has no cam_t_m2c"));
   EXPECT_THAT(refusal(replaced(bop, "700]", "700, 1]"), "3/0"),
               HasSubstr("3/1: cam_t_m2c: expected an array of 3 numbers"));
   EXPECT_THAT(refusal(replaced(bop, "2.5", "\"x\""), "3/0"), HasSubstr("3/1: cam_t_m2c: expected an array of 3"));
@@ -272,7 +281,11 @@ TEST(PoseLayouts, JsonHoldsMatricesByName) {
 
 TEST(PoseLayouts, HostileJsonIsRefused) {
   EXPECT_THAT(refusal("{}"), HasSubstr("has no pose"));
-  EXPECT_THAT(refusal("{\"a\": "), AllOf(HasSubstr("pose.txt, byte "), HasSubstr("is no JSON")));
+  EXPECT_THAT(refusal("{\"a\": "), AllOf(HasSubstr("pose.txt, byte "), HasSubstr("is not valid JSON")));
+  std::string members = "{", empties = "{\"a\": [";
+  for (int i = 0; i < 300000; ++i) members += "\"" + std::to_string(i) + "\":0,", empties += "{},";
+  EXPECT_THAT(refusal(members + "\"x\":0}"), HasSubstr("has no pose"));
+  EXPECT_THAT(refusal(empties + "{}]}"), HasSubstr("has no pose"));
   EXPECT_THAT(refusal("{\"a\": [1e999]}"), HasSubstr("too large"));
   EXPECT_THAT(refusal("{\"a\": [[[[1]]]], \"b\": null, \"c\": {}}"), HasSubstr("has no pose"));
   EXPECT_THAT(refusal("{\"3\": [{\"cam_R_m2c\": 1}], \"4\": 5}"), HasSubstr("3/0: cam_R_m2c: expected an array of 9"));

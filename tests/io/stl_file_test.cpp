@@ -199,7 +199,7 @@ TEST(StlFile, FacetsWithACornerThatIsMissingAreLeftOut) {
   for (const std::string& content : {text_stl(facets), binary_stl(facets)}) {
     const StoredMesh mesh = parse_stl(kPath, content);
     EXPECT_EQ(mesh.triangles.rows(), 2);
-    EXPECT_THAT(mesh.notes, ElementsAre("1 vertex without a place (nan) and 100 faces that used them were left out"));
+    EXPECT_THAT(mesh.notes, ElementsAre("1 vertex with a nan coordinate and 100 faces that used them were left out"));
   }
 }
 

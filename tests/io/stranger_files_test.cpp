@@ -193,7 +193,7 @@ TEST(StrangerFiles, MissingPointsAreLeftOut) {
   int used = 0;
   for (Eigen::Index face = 0; face < 242; ++face)
     for (int i = 0; i < 3; ++i) used += kSheet.triangles(face, i) % 143 == 0 || kSheet.triangles(face, i) == 7;
-  const std::string note = "3 vertices without a place (nan)";
+  const std::string note = "3 vertices with a nan coordinate";
   const std::string with_faces = note + " and " + std::to_string(used) + " faces that used them were left out";
   for (const StoredMesh& mesh : {parse_ply("", kPlyHeader + vertices + face_lines("3", 0)),
                                  parse_off("", "OFF\n144 242 0\n" + vertices + face_lines("3", 0)),
@@ -238,7 +238,7 @@ TEST(StrangerObj, WhatIsNoPolygonIsSkippedAndCounted) {
       parse_obj("", kObj + "vp 0 1\ncstype bezier\ndeg 3\ncurv 0 1 1 2 \\\n3 4\nend\nvp 2 2\ng a\nusemtl b\n");
   EXPECT_EQ(mesh.triangles, kSheet.triangles);
   EXPECT_THAT(mesh.notes,
-              ElementsAre("6 statements other than of polygons were skipped: 'cstype', 'curv', 'deg', 'end', 'vp'"));
+              ElementsAre("6 statements that are not supported were skipped: 'cstype', 'curv', 'deg', 'end', 'vp'"));
 }
 
 TEST(StrangerOff, TheKeywordMayTouchTheCounts) {

@@ -108,7 +108,7 @@ TEST(XyzFile, ALineWithTheNumberOfPointsIsChecked) {
 TEST(XyzFile, MissingPointsAreLeftOut) {
   const StoredMesh cloud = parse_xyz(kPath, replaced(kCloud, "1 2 3", "1 nan 3"));
   EXPECT_EQ(cloud.vertices.rows(), 2);
-  EXPECT_THAT(cloud.notes, ElementsAre("1 vertex without a place (nan) was left out"));
+  EXPECT_THAT(cloud.notes, ElementsAre("1 vertex with a nan coordinate was left out"));
 }
 
 // The format has no counts: a cut at the end of a line leaves a smaller, valid cloud.

@@ -27,8 +27,10 @@ ViewOptions view_side(const Mesh& mesh) {
   if (mesh.sensor) view.sensor = *mesh.sensor;
   const auto front = front_share(mesh, view);
   if (mesh.sensor || !front || *front >= 0.5) return view;
-  const Eigen::Vector3d mean = outside_of(mesh).colwise().sum().transpose();
-  if (!mean.isZero(0)) view.direction = -mean.stableNormalized();
+  constexpr double kOneSided = 0.1;  // the normals of a closed surface add up to nothing
+  const Points outside = outside_of(mesh);
+  const Eigen::Vector3d sum = outside.colwise().sum().transpose();
+  if (sum.norm() > kOneSided * outside.rowwise().norm().sum()) view.direction = -sum.stableNormalized();
   return view;
 }
 

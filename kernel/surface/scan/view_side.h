@@ -13,7 +13,7 @@ namespace corral {
 std::optional<double> front_share(const Mesh& mesh, const ViewOptions& sensor);
 
 /// From where a view was taken, by what its mesh tells: from its sensor; else from the origin, if that sees the front of at
-/// least half of the surface, or the mesh tells nothing; else from far away, against the mean of its normals.
+/// least half of the surface, or the mesh tells nothing (a closed one has no side); else from far away, against the mean of its normals.
 ViewOptions view_side(const Mesh& mesh);
 
 }  // namespace corral

@@ -47,31 +47,31 @@ double median_of_distinct(const PointGrid& grid, const AlignedColumn& squares) {
 
 /// Fills in which vertices are strays, and the spacing of the others.
 void tell_strays(const PointGrid& grid, const AlignedColumn& squares, double largest, PointSpacing& spacing) {
+  constexpr double kFew = 0.02;
   spacing.without_strays = spacing.resolution;
   const double limit = kStrayMedians * spacing.median;
   if (!(largest > limit * limit)) return;
   double sum = 0;  // in the order of the slots, which does not depend on the threads
-  int others = 0;
+  int others = 0, places = 0;
   bool is_stray = false;
   for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot) {
     const bool repeats = is_duplicate(grid, slot);
     if (!repeats) is_stray = squares[slot] > limit * limit;
     if (is_stray) spacing.strays.push_back(grid.row(static_cast<int>(slot)));
-    if (is_stray || repeats) continue;
-    sum += std::sqrt(squares[slot]);
-    ++others;
+    if (repeats) continue;
+    if (is_stray)
+      ++places;
+    else
+      sum += std::sqrt(squares[slot]), ++others;
   }
   std::sort(spacing.strays.begin(), spacing.strays.end());
-  spacing.without_strays = sum / others;
   spacing.stray_distance = std::sqrt(largest);
+  if (places <= kFew * (places + others)) spacing.without_strays = sum / others;
 }
 
 }  // namespace
 
-bool PointSpacing::is_moved_by_strays(int vertices) const {
-  constexpr double kFew = 0.01, kMoved = 1.05;
-  return static_cast<double>(strays.size()) <= kFew * vertices && resolution > kMoved * without_strays;
-}
+bool PointSpacing::is_moved_by_strays() const { return resolution > 1.05 * without_strays; }
 
 PointSpacing mean_nearest(const PointGrid& grid, const Points& points, AlignedColumn squares) {
   std::optional<PointIndex> index;

@@ -11,12 +11,12 @@ struct PointSpacing {
   double resolution = 0;      ///< their mean: pr, mesh units
   double median = 0;          ///< mesh units
   Indices strays = {};        ///< the vertices further than 20 medians from all others, ascending
-  double without_strays = 0;  ///< the mean over the other vertices, mesh units
+  double without_strays = 0;  ///< the mean without strays if these are few, at most 2 in 100; else the mean, mesh units
   double stray_distance = 0;  ///< the largest of a stray, mesh units
 
-  /// Whether a few lone vertices decide on pr: at most 1 in 100 of `vertices`, which together change it by more than 5 %. On surfaces of
-  /// uneven density, such as CAD models, many vertices are far from all others.
-  bool is_moved_by_strays(int vertices) const;
+  /// Whether a few lone vertices decide on pr: they change it by more than 5 %. On surfaces of uneven density, such as CAD
+  /// models, many vertices are far from all others.
+  bool is_moved_by_strays() const;
 };
 
 /// Point resolution pr of a surface in mesh units: the mean distance of a vertex to its nearest other vertex. Exact

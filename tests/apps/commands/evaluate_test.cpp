@@ -200,7 +200,7 @@ TEST_F(Evaluate, APairWhoseTruthDoesNotFitIsNamedAndCounted) {
   place_.put("data/b3r/pairs.csv", replaced(place_.text("data/b3r/pairs.csv"), "m1-0.05.txt", "inverse.txt"));
   const Outcome outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("warning: truth does not fit: pair m1-0.05, "));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: truth does not fit: pair m1-0.05: "));
   EXPECT_THAT(outcome.err, HasSubstr("the truth fits inverted: "));
   for (const StudyRecord& record : read_study(place_ / "run").records)
     EXPECT_EQ(record.truth, record.pair == "m1-0.05" ? "inverted" : "fits");

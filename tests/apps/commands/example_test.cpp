@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "io/dataset_file.h"
 #include "tests/support/program.h"
 
 namespace corral {
@@ -103,8 +106,7 @@ TEST_F(ExamplePair, AStrayVertexOnOneSideIsTheCauseOfAnErrorInUnits) {
   source_.vertices.bottomRows(1) << 0, 0, 30000;
   const Outcome outcome = run();
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("both in the same unit"), HasSubstr("the source has a stray point: vertex 900")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("both in the same unit"), HasSubstr("source: stray point: vertex 900")));
   expect_registered(run("--drop-stray"));
 }
 
@@ -126,7 +128,9 @@ TEST_F(ExamplePair, AMeshThatMeetsACloudGetsAHint) {
 TEST_F(ExamplePair, MillimetresAgainstHalfMillimetresAreNamed) {
   truth_.translation = 2 * truth_.translation;
   target_.vertices *= 2;
-  EXPECT_THAT(run().err, HasSubstr("warning: wrong units: the target's pr is 1.9"));
+  EXPECT_EQ(run().err, "") << "by a truth that fits they are of different sizes";
+  EXPECT_THAT(place_.corral("match source.ply target.ply -o matches.csv").err,
+              HasSubstr("warning: units may differ: the target's pr is 1.9"));
 }
 
 /// Every command that writes refuses to write over what it reads, before any work.
@@ -145,14 +149,18 @@ TEST_F(ExamplePair, OutputsNeverReplaceInputs) {
       "refine folder/matches.csv folder/group_gc.csv --truth truth.txt -o truth.txt",
       "perturb source.ply -o source.ply",
       "perturb source.ply -o copy.ply --truth source.ply",
+      "align source.ply target.ply --poses poses.csv -o aligned",
       "scan source.ply -o source.ply",
       "triangulate source.ply -o folder/../source.ply",
       "align source.ply target.ply --poses folder/pairs.csv -o folder",
   };
   place_.put("folder/pairs.csv", "source,target,pose\n");
+  std::filesystem::create_directories(place_ / "aligned/poses");
+  place_.put("aligned/poses/2.xf", transform_text(truth_));
+  place_.put("poses.csv", "source,target,transform\nsource,target,aligned/poses/2.xf\n");
   const std::vector<std::string> files = {"source.ply",         "target.ply",          "truth.txt",
                                           "folder/matches.csv", "folder/group_gc.csv", "folder/pose_gc.txt",
-                                          "folder/start.txt",   "folder/pairs.csv"};
+                                          "aligned/poses/2.xf", "folder/start.txt",    "folder/pairs.csv"};
   std::vector<std::string> before;
   for (const std::string& file : files) before.push_back(place_.text(file));
   for (const std::string& call : calls) {
@@ -162,6 +170,47 @@ TEST_F(ExamplePair, OutputsNeverReplaceInputs) {
     for (std::size_t i = 0; i < files.size(); ++i)
       EXPECT_EQ(place_.text(files[i]), before[i]) << call << ": " << files[i];
   }
+}
+
+TEST_F(ExamplePair, TwoOutputsAreTwoFiles) {
+  run();
+  const Outcome outcome = place_.corral("perturb source.ply -o copy.ply --truth ./copy.ply");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("is named for two outputs"));
+}
+
+TEST_F(ExamplePair, FlippedNormalsAreNamedWithoutAskingForAnExplanation) {
+  flip_target();
+  run("-o folder");
+  const Outcome outcome = place_.corral("run source.ply target.ply --truth truth.txt --methods gc");
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the normals of the surfaces point to opposite sides on 100 %"));
+}
+
+TEST_F(ExamplePair, SurfacesInOtherUnitsComeBeforeTheTruth) {
+  target_.vertices *= 10;
+  EXPECT_THAT(run().err, HasSubstr("warning: truth does not fit: units may differ: the target's pr is 9.9"));
+  target_.vertices *= 100;
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("units differ by a factor of 99"));
+}
+
+TEST_F(ExamplePair, AStudyNamesStrayVerticesAndFlippedSides) {
+  add_stray(source_);
+  flip_target();
+  run();
+  Dataset set;
+  set.name = "set";
+  std::filesystem::create_directory(place_ / "set");
+  place_.put("set/dataset.toml", dataset_toml_text(set));
+  place_.put("set/pairs.csv", "pair,source,target,truth\na,../source.ply,../target.ply,../truth.txt\n");
+  place_.put("small.toml",
+             "name = \"small\"\ndataset = \"set\"\nattribute = \"threshold_pr\"\nlevels = [4]\ngroupers = [\"gc\"]\n"
+             "[matching]\nresolution = \"target\"\n");
+  const Outcome outcome = place_.corral("evaluate small.toml --data set -o study");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("warning: pair a: source: stray point: vertex 900"),
+                                 HasSubstr("warning: pair a: the normals of the surfaces point to opposite sides")));
 }
 
 }  // namespace

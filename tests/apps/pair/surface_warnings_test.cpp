@@ -67,9 +67,9 @@ TEST(SurfaceWarnings, NamesTheStepOf32BitCoordinatesFarFromTheOrigin) {
 
 TEST(UnitWarning, NamesPowersOfTenAndOtherFactorsOnBothSizes) {
   for (const double factor : {10.0, 0.1, 1000.0, 0.001, 2.0, 0.5, 25.4})
-    EXPECT_THAT(unit_warning({100, 1}, {100 * factor, factor}), StartsWith("wrong units: the target's pr is "))
+    EXPECT_THAT(unit_warning({100, 1}, {100 * factor, factor}), StartsWith("units may differ: the target's pr is "))
         << factor;
-  EXPECT_THAT(unit_warning({100, 1}, {2000, 11}), StartsWith("wrong units")) << "in a scene of twice the size";
+  EXPECT_THAT(unit_warning({100, 1}, {2000, 11}), StartsWith("units may differ")) << "in a scene of twice the size";
 }
 
 TEST(UnitWarning, NoneForSizesOfOneUnit) {

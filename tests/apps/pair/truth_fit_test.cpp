@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"
@@ -60,6 +62,25 @@ TEST(TruthFit, NamesTheFactorOfATranslationInOtherUnits) {
     ASSERT_EQ(fit.verdict, TruthFit::OtherUnits) << factor;
     EXPECT_EQ(fit.factor, factor);
     EXPECT_THAT(fit.name(), StartsWith("translation times "));
+  }
+}
+
+TEST(TruthFit, NamesAnInverseInOtherUnitsAndATransposedRotation) {
+  MovedPair pair;
+  const RigidTransform inverse = pair.truth.inverse();
+  for (const double factor : {0.001, 1000.0}) {
+    const TruthFit fit = pair.fit({inverse.rotation, inverse.translation / factor});
+    EXPECT_EQ(fit.verdict, TruthFit::Inverted);
+    EXPECT_EQ(fit.factor, factor);
+    EXPECT_THAT(fit.text(), HasSubstr("inverted, with its translation multiplied by "));
+  }
+  pair.source.vertices.col(0) *= 3;
+  pair.source.vertices.col(1) *= 2;
+  pair.truth = {Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), {9, -4, 2}};
+  pair.target = move_mesh(pair.source, pair.truth);
+  for (int side = 0; side < 2; ++side) {
+    if (side == 1) pair.source = thin_mesh(pair.source, 0.4, 1), pair.target = thin_mesh(pair.target, 0.9, 1);
+    EXPECT_EQ(pair.fit({pair.truth.rotation.transpose(), pair.truth.translation}).name(), "transposed") << side;
   }
 }
 

@@ -182,6 +182,9 @@ TEST(EstimateNormals, FollowTheNormalsOrTheSensorOfTheMesh) {
   EXPECT_EQ(estimate_normals(cloud), -outward);
   cloud.normals.row(5).setZero();  // unknown there: towards the origin, which is inwards too
   EXPECT_EQ(estimate_normals(cloud), -outward);
+  cloud.sensor = 50 * cloud.vertices.row(5).transpose();  // towards the sensor of the file, if that is known
+  EXPECT_EQ(estimate_normals(cloud).row(5), outward.row(5));
+  EXPECT_EQ(estimate_normals(cloud).row(6), -outward.row(6));
   cloud.normals.resize(0, 3);
   cloud.sensor = Eigen::Vector3d(0, 0, 50);
   NormalOptions options;

@@ -50,6 +50,10 @@ TEST(ViewSide, TakesTheSensorOfTheMeshThenTheOriginThenTheSideOfTheFaces) {
   mesh.sensor.reset();
   mesh.triangles.resize(0, 3);
   EXPECT_FALSE(view_side(mesh).direction) << "nothing is known";
+  Mesh ball = testing::icosphere(3);
+  ball.vertices.col(0).array() += 7;
+  ASSERT_LT(front_share(ball, {}).value(), 0.5);
+  EXPECT_FALSE(view_side(ball).direction) << "a closed surface has no side";
 }
 
 }  // namespace

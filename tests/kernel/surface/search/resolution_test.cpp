@@ -43,7 +43,7 @@ TEST(PointSpacing, HasTheMedianAndTheStrays) {
   EXPECT_DOUBLE_EQ(clean.median, 1);
   EXPECT_DOUBLE_EQ(clean.without_strays, 1);
   EXPECT_TRUE(clean.strays.empty());
-  EXPECT_FALSE(clean.is_moved_by_strays(900));
+  EXPECT_FALSE(clean.is_moved_by_strays());
   points.row(17) << 15, 15, 4500;
   points.row(40) << 15, 15, 4500;  // twice in one place: a stray still
   for (int threads = 0; threads < 2; ++threads) {
@@ -54,9 +54,17 @@ TEST(PointSpacing, HasTheMedianAndTheStrays) {
     EXPECT_DOUBLE_EQ(moved.without_strays, 1);
     EXPECT_DOUBLE_EQ(moved.stray_distance, Eigen::Vector3d(0, 0, 4500).norm());
     EXPECT_NEAR(moved.resolution, (898 + 4500) / 899.0, 1e-9);
-    EXPECT_TRUE(moved.is_moved_by_strays(900));
-    EXPECT_FALSE(moved.is_moved_by_strays(100)) << "that would be many";
+    EXPECT_TRUE(moved.is_moved_by_strays());
   }
+}
+
+TEST(PointSpacing, ManyFarVerticesAreNoStrays) {
+  Points points = testing::grid(30, 30, 1.0).vertices;
+  for (int row = 0; row < 30; ++row) points.row(30 * row).array() += 500 + 60 * row;
+  const PointSpacing uneven = point_spacing(points);
+  EXPECT_EQ(uneven.strays.size(), 30U);
+  EXPECT_EQ(uneven.without_strays, uneven.resolution);
+  EXPECT_FALSE(uneven.is_moved_by_strays());
 }
 
 TEST(PointResolution, DuplicatesCountOnce) {
