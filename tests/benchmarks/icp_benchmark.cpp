@@ -100,7 +100,7 @@ struct Peer {
 };
 
 /// The other libraries that are installed, for one task.
-std::vector<Peer> peers_for(const Task& task) {
+std::vector<Peer> peers_for([[maybe_unused]] const Task& task) {
   std::vector<Peer> found;
 #ifdef CORRAL_WITH_PCL
   found.push_back({"pcl", peers::pcl_icp(task.source.vertices, task.target.vertices)});
