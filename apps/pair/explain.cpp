@@ -76,7 +76,7 @@ std::string text_of_pair(Cause cause, const PairCounts& counts, const MethodReco
     return "can be registered: " + matches + ", and the refinement of all of them " + end_of(oracle) + "; " +
            keypoints + " (" + limit + ")";
   if (cause == Cause::TruthDoesNotFit)
-    return "the truth does not fit the surfaces, and all that is judged by it means nothing: " + counts.misfit;
+    return "the truth does not fit the surfaces, so no result that is judged by it means anything: " + counts.misfit;
   if (cause == Cause::NormalsOpposed)
     return "lost before the grouping: the normals of the source (" + counts.source_side + ") and of the target (" +
            counts.target_side + ") point to opposite sides on " + fixed(100 * *counts.opposed_share, 0) +

@@ -25,7 +25,8 @@ enum class Cause {
   NoAnswer,             ///< the grouper failed, or would have needed too much memory
 };
 
-/// "found", "saved", "truth does not fit", "normals opposed", "too few keypoints", "too few true matches", "grouper missed", "degenerate selection", "diverged",
+/// "found", "saved", "truth does not fit", "normals opposed", "too few keypoints", "too few true matches", "grouper
+/// missed", "degenerate selection", "diverged",
 /// "not converged", "spoiled", "no answer".
 const char* to_text(Cause cause);
 

@@ -82,10 +82,16 @@ class PairStudy {
     const PointSpacing source = point_spacing(source_.vertices), target = point_spacing(target_.vertices);
     for (const std::string& warning : surface_warnings(source_, source)) warnings_.push_back("source: " + warning);
     for (const std::string& warning : surface_warnings(target_, target)) warnings_.push_back("target: " + warning);
-    if (unit_.pair.truth.empty()) return;
+    const std::string units =
+        unit_warning(size_of(source_.vertices, source.resolution), size_of(target_.vertices, target.resolution));
+    if (unit_.pair.truth.empty()) {
+      if (!units.empty()) warnings_.push_back(units);
+      return;
+    }
     truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
                         unit_.thresholds_pr.front());
     fit_ = fit_truth(source_, target_, truth_->target_from_source, source, target);
+    if (!units.empty() && !fit_->belongs()) warnings_.push_back(units);
     for (const double threshold : unit_.thresholds_pr)
       labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
     warn_of_sides();

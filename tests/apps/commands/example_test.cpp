@@ -211,6 +211,14 @@ TEST_F(ExamplePair, AStudyNamesStrayVerticesAndFlippedSides) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("warning: pair a: source: stray point: vertex 900"),
                                  HasSubstr("warning: pair a: the normals of the surfaces point to opposite sides")));
+  target_.vertices *= 3;
+  run();
+  EXPECT_THAT(place_.corral("evaluate small.toml --data set -o other").err,
+              HasSubstr("warning: truth does not fit: pair a: "));
+  source_ = read_mesh(kExample + "source.ply");
+  run();
+  EXPECT_THAT(place_.corral("evaluate small.toml --data set -o third").err,
+              HasSubstr("warning: pair a: units may differ: the target's pr is 2.9"));
 }
 
 }  // namespace
