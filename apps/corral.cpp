@@ -81,6 +81,8 @@ int main(int argc, char** argv) {
   corral::add_transform(app, action);
   corral::add_triangulate(app, action);
   corral::add_evaluate(app, action);
+  corral::add_plan(app, action);
+  corral::add_merge(app, action);
   corral::add_dataset(app, action);
   corral::add_compare(app, action);
   corral::add_claims(app, action);

@@ -76,8 +76,12 @@ StudyFolder read_study(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
   const std::string records = (std::filesystem::path(folder) / "records.csv").string();
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
+  if (!std::filesystem::exists(path, ignored)) {
+    if (std::filesystem::exists(std::filesystem::path(folder) / "units", ignored))
+      throw IoError(folder, "",
+                    "is an unfinished study; repeat the command that makes it to continue, or 'corral merge' its shards");
     throw IoError(path, "", "does not exist, expected a folder that 'corral evaluate' made");
+  }
   try {
     const Json manifest = parse_manifest(path);
     for (const Json& experiment : manifest.at("experiments")) run.experiments.push_back(experiment_of(experiment));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/results/study_record.h"
+#include "apps/runtime/json.h"
 #include "apps/study/content_store.h"
 #include "apps/study/work_list.h"
 #include "io/file.h"
@@ -42,8 +43,8 @@ struct UnitResult {
 using InputHashes = std::map<std::string, std::string>;
 std::string hash_of(const InputHashes& inputs, const std::string& path);
 
-/// A hash of what the result of a unit depends on, as the name of its file.
-std::string unit_key(const WorkUnit& unit, const InputHashes& inputs);
+/// A hash of what the result of a unit depends on besides its files.
+std::string unit_key(const WorkUnit& unit);
 
 /// A unit with the tools to evaluate it.
 struct UnitWork {
@@ -59,8 +60,8 @@ StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh&
 /// receives the files of selections and poses.
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files);
 
-/// To text and back; absent for any other text.
-std::string unit_result_text(const UnitResult& result);
-std::optional<UnitResult> parse_unit_result(const std::string& text);
+/// To JSON and back. Throws Json::exception or InvalidInput for any other JSON.
+Json to_json(const UnitResult& result);
+UnitResult unit_result_of(const Json& json);
 
 }  // namespace corral

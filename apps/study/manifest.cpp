@@ -6,6 +6,7 @@
 
 #include "apps/runtime/build_info.h"
 #include "apps/runtime/json.h"
+#include "apps/runtime/workers.h"
 #include "grouping/registry.h"
 #include "io/file.h"
 #include "io/transform_file.h"
@@ -93,81 +94,78 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
   return json;
 }
 
-/// What two calls must agree on to be the same study.
-std::string hash_of_experiments(const WorkList& list) {
-  std::string text = compact_json(experiments_json(list));
-  for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
-  return content_hash(text);
-}
-std::string hash_of_inputs(const WorkList& list, const InputHashes& inputs) {
-  return content_hash(inputs_json(list, inputs).dump());
-}
-
 }  // namespace
 
-InputHashes hash_inputs(const WorkList& list) {
+InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& units, int jobs) {
   InputHashes inputs;
-  for (const WorkUnit& unit : list.units)
-    for (const std::string& file : {unit.pair.source, unit.pair.target, unit.pair.truth}) {
-      if (file.empty() || inputs.count(file)) continue;
-      try {
-        const auto [name, key] = split_transform_name(file);  // a truth may be one of several in its file
-        inputs[file] = content_hash(read_file(name) + key);
-      } catch (const IoError&) {
-        inputs[file] = "";  // the record of the pair reports it
-      }
+  for (const std::size_t unit : units) {
+    const DatasetPair& pair = list.units[unit].pair;
+    for (const std::string& file : {pair.source, pair.target, pair.truth})
+      if (!file.empty()) inputs[file];
+  }
+  std::vector<InputHashes::value_type*> files;
+  for (auto& input : inputs) files.push_back(&input);
+  workers(jobs)(static_cast<int>(files.size()), [&](int i) {
+    auto& [file, hash] = *files[static_cast<std::size_t>(i)];
+    try {
+      const auto [name, key] = split_transform_name(file);  // a truth may be one of several in its file
+      hash = content_hash(read_file(name) + key);
+    } catch (const IoError&) {  // the record of the pair reports it
     }
+  });
   return inputs;
 }
 
-std::string manifest_text(const WorkList& list, const InputHashes& inputs, const std::vector<UnitResult>& results,
-                          const std::string& command_line) {
+StudyIdentity identity_of(const WorkList& list) {
   const BuildInfo build = build_info();
+  std::string text = compact_json(experiments_json(list));
+  for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
+  return {build.version, build.commit, content_hash(text)};
+}
+
+Json machine_json() {
   const MachineInfo machine = machine_info();
-  return json_text(Json{{"format", "corral run 1"},
-                        {"is_finished", results.size() == list.units.size()},
+  return {{"processor", machine.processor},
+          {"processors", machine.processors},
+          {"memory_gb", machine.memory_gb},
+          {"system", machine.system}};
+}
+
+std::string manifest_text(const WorkList& list, const InputHashes& inputs, const StudyOrigin& origin) {
+  const BuildInfo build = build_info();
+  Json machines = Json::array();
+  for (const std::string& machine : origin.machines) machines.push_back(Json::parse(machine));
+  return json_text(Json{{"format", "corral run 2"},
                         {"program",
                          {{"version", build.version},
                           {"commit", build.commit},
                           {"compiler", build.compiler},
                           {"flags", build.flags},
                           {"libraries", build.libraries}}},
-                        {"machine",
-                         {{"processor", machine.processor},
-                          {"processors", machine.processors},
-                          {"memory_gb", machine.memory_gb},
-                          {"system", machine.system}}},
-                        {"command_line", command_line},
-                        {"experiments_hash", hash_of_experiments(list)},
-                        {"inputs_hash", hash_of_inputs(list, inputs)},
+                        {"machines", machines},
+                        {"command_line", origin.command_line},
+                        {"experiments_hash", identity_of(list).experiments},
                         {"experiments", experiments_json(list)},
-                        {"pairs", pairs_json(list, results)},
+                        {"pairs", pairs_json(list, origin.results)},
                         {"inputs", inputs_json(list, inputs)}});
 }
 
-void check_same_run(const std::string& folder, const WorkList& list, const InputHashes& inputs) {
+void check_same_study(const std::string& folder, const StudyIdentity& mine) {
   const std::string path = (fs::path(folder) / "manifest.json").string();
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
-  Json manifest;
-  std::string version, commit, experiments, data;
+  StudyIdentity other;
   try {
-    manifest = Json::parse(read_file(path));
-    version = manifest.at("program").at("version");
-    commit = manifest.at("program").at("commit");
-    experiments = manifest.at("experiments_hash");
-    data = manifest.at("inputs_hash");
+    const Json manifest = Json::parse(read_file(path));
+    other = {manifest.at("program").at("version"), manifest.at("program").at("commit"),
+             manifest.at("experiments_hash")};
   } catch (const Json::exception& error) {
     throw IoError(path, "", std::string("is not the manifest of a study: ") + error.what());
   }
-  const BuildInfo build = build_info();
-  const std::string other = version != build.version                   ? "by version " + version + " of the program"
-                            : commit != build.commit                   ? "by commit " + commit + " of the program"
-                            : experiments != hash_of_experiments(list) ? "from other experiments or settings"
-                            : data != hash_of_inputs(list, inputs)     ? "from other data"
-                                                                       : "";
-  if (!other.empty())
-    throw IoError(path, "", "this study was made " + other + ", expected another folder for -o (or remove this one)");
+  const std::string difference = other.difference_from(mine);
+  if (!difference.empty())
+    throw IoError(path, "",
+                  "this study was made " + difference + ", expected another folder for -o (or remove this one)");
 }
 
 }  // namespace corral

@@ -256,11 +256,15 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
 }
 
 Experiment read_experiment(const std::string& name_or_path) {
+  return parse_experiment(name_or_path, experiment_text(name_or_path));
+}
+
+std::string experiment_text(const std::string& name_or_path) {
   std::error_code ignored;
   if (std::filesystem::exists(name_or_path, ignored) && !std::filesystem::is_directory(name_or_path, ignored))
-    return parse_experiment(name_or_path, read_file(name_or_path));
+    return read_file(name_or_path);
   const auto found = embedded_experiments().find(name_or_path + ".toml");
-  if (found != embedded_experiments().end()) return parse_experiment(found->first, found->second);
+  if (found != embedded_experiments().end()) return found->second;
   const std::string nearest = nearest_name(name_or_path, built_in_experiments());
   throw IoError(name_or_path, "",
                 "is neither a file nor a built-in experiment" +

@@ -45,11 +45,13 @@ struct Experiment {
   int tables = 1;      ///< of Sweep::TableSize: pairs whose tables are timed
 };
 
-/// Reads an experiment: a file, or the name of a built-in one (see built_in_experiments). Throws IoError naming file, line
-/// and key, with a suggestion for an unknown key or name.
-Experiment read_experiment(const std::string& name_or_path);
-/// The same of text that is in memory; `path` is for the messages.
+/// The text of an experiment: a file, or the name of a built-in one (see built_in_experiments). Throws IoError, with a
+/// suggestion for an unknown name.
+std::string experiment_text(const std::string& name_or_path);
+/// Reads that text; `path` is for the messages. Throws IoError naming file, line and key, with a suggestion for an unknown key.
 Experiment parse_experiment(const std::string& path, const std::string& text);
+/// Both in one.
+Experiment read_experiment(const std::string& name_or_path);
 
 /// The names of the experiments of paper/experiments/, sorted.
 std::vector<std::string> built_in_experiments();

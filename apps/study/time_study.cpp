@@ -93,11 +93,13 @@ CorrespondenceSet draw_rows(const CorrespondenceSet& matches, int count, std::ui
 std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& settings,
                                     const std::function<void(const std::string& what)>& observer) {
   const Experiment& experiment = list.experiments.front();
-  const InputHashes inputs = hash_inputs(list);
+  std::vector<std::size_t> units(list.units.size());
+  std::iota(units.begin(), units.end(), 0);
+  const InputHashes inputs = hash_inputs(list, units, 1);
   const std::filesystem::path folder(settings.run);
   make_folder(folder.string());
   const FolderLock lock(folder.string());
-  check_same_run(folder.string(), list, inputs);
+  check_same_study(folder.string(), identity_of(list));
   const ContentStore store(settings.cache.empty() ? (folder / "cache").string() : settings.cache);
   observer("matching");
   std::vector<StudyRecord> records;
@@ -129,7 +131,8 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
   const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
   write_files({{(folder / "records.csv").string(), records_text(records)},
                {(folder / "time.csv").string(), time_text(rows)},
-               {(folder / "manifest.json").string(), manifest_text(list, inputs, results, settings.command_line)}});
+               {(folder / "manifest.json").string(),
+                manifest_text(list, inputs, {results, {compact_json(machine_json())}, settings.command_line})}});
   return rows;
 }
 

@@ -60,7 +60,9 @@ TaskResult task_of(const Json& json) {
   return task;
 }
 
-UnitResult unit_of(const Json& json) {
+}  // namespace
+
+UnitResult unit_result_of(const Json& json) {
   UnitResult result;
   result.failure = json.at("failure");
   result.resolution = json.at("resolution");
@@ -79,9 +81,7 @@ UnitResult unit_of(const Json& json) {
   return result;
 }
 
-}  // namespace
-
-std::string unit_result_text(const UnitResult& result) {
+Json to_json(const UnitResult& result) {
   Json tasks = Json::array(), oracles = Json::array(), frames = Json::array();
   for (const TaskResult& task : result.tasks) tasks.push_back(to_json(task));
   for (const TaskResult& oracle : result.oracles) oracles.push_back(to_json(oracle));
@@ -99,19 +99,7 @@ std::string unit_result_text(const UnitResult& result) {
               {"frame_share", frames},
               {"tasks", tasks},
               {"oracles", oracles},
-              {"baseline", result.baseline ? to_json(*result.baseline) : Json(nullptr)}}
-             .dump(-1, ' ', false, Json::error_handler_t::replace) +
-         "\n";
-}
-
-std::optional<UnitResult> parse_unit_result(const std::string& text) {
-  try {
-    return unit_of(Json::parse(text));
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  } catch (const InvalidInput&) {
-    return std::nullopt;
-  }
+              {"baseline", result.baseline ? to_json(*result.baseline) : Json(nullptr)}};
 }
 
 }  // namespace corral

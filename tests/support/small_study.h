@@ -3,7 +3,12 @@
 
 // A data set of a few small pairs with exact truth, and an experiment on it.
 
-#include "apps/results/study_record.h"
+#include <map>
+#include <string>
+#include <vector>
+
+#include "apps/results/study_folder.h"
+#include "apps/study/content_store.h"
 #include "io/csv_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
@@ -59,6 +64,42 @@ inline std::string without_times(const std::string& path) {
   const auto column = static_cast<std::size_t>(table.column("time_ms"));
   for (auto& row : table.rows) row[column].clear();
   return csv_text(table);
+}
+
+/// Everything of a study that does not depend on the clock, by file.
+inline std::map<std::string, std::string> lasting_files(const Workplace& place, const std::string& run) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(place / (run + "/selections")))
+    if (entry.is_regular_file())
+      files[std::filesystem::relative(entry.path(), place / run).string()] = text_of(entry.path().string());
+  files["summary.csv"] = place.text(run + "/summary.csv");
+  for (const auto& [name, pair] : read_study(place / run).pairs)
+    files[name] = std::to_string(*pair.source_points) + " " + std::to_string(*pair.source_keypoints);
+  files["records.csv"] = without_times(place / (run + "/records.csv"));
+  return files;
+}
+
+/// The lines of a text, each with its end.
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    lines.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return lines;
+}
+
+inline std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+/// A line of a journal whose hash agrees, whatever is in it.
+inline std::string hashed(std::string content) {
+  if (!content.empty() && content.back() == '\n') content.pop_back();
+  return content_hash(content) + " " + content + "\n";
 }
 
 }  // namespace corral::testing

@@ -27,18 +27,7 @@ class Evaluate : public ::testing::Test {
     place_.put("small.toml", kSmallExperiment);
   }
   Outcome evaluate(const std::string& rest) const { return place_.corral("evaluate small.toml --data data " + rest); }
-  /// Everything of a run that does not depend on the clock.
-  std::map<std::string, std::string> content(const std::string& run) const {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(place_ / (run + "/selections")))
-      if (entry.is_regular_file())
-        files[std::filesystem::relative(entry.path(), place_ / run).string()] = text_of(entry.path().string());
-    files["summary.csv"] = place_.text(run + "/summary.csv");
-    for (const auto& [name, pair] : read_study(place_ / run).pairs)
-      files[name] = std::to_string(*pair.source_points) + " " + std::to_string(*pair.source_keypoints);
-    files["records.csv"] = without_times(place_ / (run + "/records.csv"));
-    return files;
-  }
+  std::map<std::string, std::string> content(const std::string& run) const { return lasting_files(place_, run); }
   const Workplace place_;
 };
 
@@ -74,7 +63,6 @@ TEST_F(Evaluate, WritesARunThatReadsBack) {
     EXPECT_FALSE(read_poses(place_ / "run/" + poses).empty());
   }
   const auto manifest = nlohmann::json::parse(place_.text("run/manifest.json"));
-  EXPECT_TRUE(manifest["is_finished"]);
   EXPECT_EQ(manifest["inputs"]["b3r/m1-0.05"]["source"].get<std::string>().size(), 32u);
   EXPECT_EQ(manifest["experiments"][0]["options"]["gc"]["tolerance_pr"], 3);
   EXPECT_EQ(manifest["program"]["libraries"]["Eigen"].get<std::string>().front(), '3');
@@ -131,31 +119,68 @@ TEST_F(Evaluate, GoesOnAfterBeingKilled) {
   EXPECT_EQ(content("cut"), content("whole"));
 }
 
-// A unit that is there is not done again; one that is damaged, or half written, is.
+// A pair that is there is not done again; one whose line or whose selections are damaged is.
 TEST_F(Evaluate, WhatIsDoneStaysAndWhatIsDamagedIsDoneAgain) {
+  ASSERT_EQ(evaluate("-o run --jobs 1").status, 0);
+  const auto before = content("run");
+  const std::string journal = place_ / "run/units/1-of-1.1.journal";
+  std::vector<std::string> lines = lines_of(text_of(journal));
+  ASSERT_EQ(lines.size(), 1 + 6u);
+  const std::vector<std::string> whole = lines;
+  lines[1] = lines[1].substr(0, 40);
+  lines[2] = std::regex_replace(lines[2], std::regex("\"correct\":\\[[0-9]+"), "\"correct\":[999999999");
+  lines[3] = hashed("{}");
+  lines[4] = hashed(std::regex_replace(lines[4].substr(33), std::regex("\"correct\":\\[[0-9]+\\]"), "\"correct\":[]"));
+  lines.back().pop_back();  // the last line was not written to its end
+  put_text(journal, joined(lines));
+  std::filesystem::remove_all(place_ / "run/cache");
+  const std::string times = place_.text("run/records.csv");
+  ASSERT_EQ(evaluate("-o run --jobs 1").status, 0);
+  EXPECT_EQ(content("run"), before);
+  EXPECT_EQ(text_of(journal), joined(lines)) << "a call writes to its own file alone";
+  const std::vector<std::string> again = lines_of(place_.text("run/units/1-of-1.2.journal"));
+  ASSERT_EQ(again.size(), 1 + 5u);
+  for (const std::string& line : again)
+    EXPECT_NE(line.substr(33, 50), whole[5].substr(33, 50)) << "the fifth was whole";
+  EXPECT_NE(place_.text("run/records.csv"), times);  // five pairs have new times
+}
+
+TEST_F(Evaluate, SelectionsThatAreGoneAreMadeAgain) {
   ASSERT_EQ(evaluate("-o run").status, 0);
   const auto before = content("run");
-  std::vector<std::filesystem::path> units;
-  for (const auto& entry : std::filesystem::directory_iterator(place_ / "run/units")) units.push_back(entry.path());
-  ASSERT_EQ(units.size(), 6u);
-  const std::string other = text_of(units[1].string());
-  put_text(units[0].string(), text_of(units[0].string()).substr(0, 40));
-  put_text(units[2].string(), "{}");
-  put_text(units[3].string(),
-           std::regex_replace(text_of(units[3].string()), std::regex("\"correct\":\\[[0-9]+\\]"), "\"correct\":[]"));
-  put_text(units[4].string(), std::regex_replace(text_of(units[4].string()), std::regex("\"selected\":[0-9]+"),
-                                                 "\"selected\":2147483647"));
-  put_text(units[5].string(), std::regex_replace(text_of(units[5].string()), std::regex("\"correct\":\\[[0-9]+"),
-                                                 "\"correct\":[999999999"));
-  put_text(place_ / "run/units/half.json.Ab12Cd", "{");
-  put_text(place_ / "run/cache/0123.Ab12Cd", "half");
-  const std::string times = place_.text("run/records.csv");
+  std::filesystem::remove(place_ / "run/selections/b3r/2.5pr/m1-0.25.csv");
+  place_.put("run/selections/b3r/2.5pr/m1-0.25.csv.part-Ab12Cd", "half");
   ASSERT_EQ(evaluate("-o run").status, 0);
   EXPECT_EQ(content("run"), before);
-  EXPECT_EQ(text_of(units[1].string()), other);
-  EXPECT_NE(place_.text("run/records.csv"), times);  // five units have new times
-  EXPECT_FALSE(std::filesystem::exists(place_ / "run/units/half.json.Ab12Cd"));
-  EXPECT_FALSE(std::filesystem::exists(place_ / "run/cache/0123.Ab12Cd"));
+}
+
+TEST_F(Evaluate, APairThatCouldNotBeReadIsDoneWhenItCan) {
+  const std::string mesh = place_.text("data/b3r/m1-0.25.ply");
+  std::filesystem::remove(place_ / "data/b3r/m1-0.25.ply");
+  ASSERT_EQ(evaluate("-o run").status, 4);
+  place_.put("data/b3r/m1-0.25.ply", mesh);
+  ASSERT_EQ(evaluate("-o run").status, 0);
+  ASSERT_EQ(evaluate("-o whole").status, 0);
+  EXPECT_EQ(content("run"), content("whole"));
+}
+
+// SIGTERM is what a scheduler sends before it kills.
+TEST_F(Evaluate, ASignalEndsItInOrder) {
+  for (const auto& [signal, status] : {std::pair("INT", 130), std::pair("TERM", 143)}) {
+    place_.put("call", "exec '" CORRAL_PROGRAM "' evaluate small.toml --data data -o run --jobs 1 2>log >/dev/null");
+    const std::string line = "cd '" + (place_ / "") +
+                             "' && python3 -c 'import signal, os; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+                             "os.execvp(\"sh\", [\"sh\", \"call\"])' & call=$!; while [ ! -e '" +
+                             (place_ / "run/units") + "' ]; do sleep 0.01; done; kill -" + signal +
+                             " $call; wait $call";
+    const int ended = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(ended), status);
+    EXPECT_THAT(place_.text("log"), ::testing::MatchesRegex("corral: stopped with [0-9] of 6 pairs done; the same "
+                                                            "command continues\n"));
+    EXPECT_FALSE(std::filesystem::exists(place_ / "run/summary.csv"));
+    EXPECT_EQ(evaluate("-o run").status, 0);
+    std::filesystem::remove_all(place_ / "run");
+  }
 }
 
 TEST_F(Evaluate, APairThatFailsIsRecordedWithItsCause) {
@@ -222,7 +247,14 @@ TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {
   place_.put("data/b3r/m1-0.05.txt", replaced(place_.text("data/b3r/m1-0.05.txt"), "\n", " \n"));
   outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, HasSubstr("other data"));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("another content of"), HasSubstr("m1-0.05.txt")));
+}
+
+TEST_F(Evaluate, AnUnfinishedStudyIsSaidToBe) {
+  std::filesystem::create_directories(place_ / "run/units");
+  const Outcome outcome = place_.corral("report run -o report");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("run: is an unfinished study; repeat the command"));
 }
 
 TEST_F(Evaluate, TwoCallsDoNotWorkOnOneRun) {
@@ -297,7 +329,6 @@ TEST_F(Evaluate, TimesAreTakenAlone) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("upper quartile"), Not(HasSubstr("quartiles"))));
   const CsvTable times = read_csv(place_ / "run/time.csv");
   EXPECT_EQ(times.rows.size(), 14u);  // no table has 100000 rows
-  EXPECT_TRUE(nlohmann::json::parse(place_.text("run/manifest.json"))["is_finished"]);
   const StudyFolder run = read_study(place_ / "run");
   EXPECT_EQ(run.records.size(), 28u);
   for (const StudyRecord& record : run.records) {

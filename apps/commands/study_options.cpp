@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/study_options.h"
+
+#include "apps/commands/command_options.h"
+#include "kernel/error.h"
+
+namespace corral {
+
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  command.add_option("experiments", options.experiments, "Names of experiments of the paper, or TOML files")
+      ->type_name("EXPERIMENT")
+      ->required();
+  command.add_option("--data", options.data, "A data set (a folder with dataset.toml), or a folder of data sets")
+      ->type_name("FOLDER")
+      ->required();
+  add_set_option(command, options.set);
+  command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
+}
+
+StudyCall study_call(const StudyOptions& options) {
+  StudyCall call = study_call(options.experiments, options.data);
+  call.options = parse_set(options.set);
+  call.dense = options.dense;
+  return call;
+}
+
+WorkList work_list_of(const StudyOptions& options) {
+  try {
+    return work_list_of(study_call(options));
+  } catch (const InvalidInput& error) {  // of --set: the experiments themselves are checked where they are read
+    throw UsageError(error.what());
+  }
+}
+
+std::vector<std::string> words_of(const StudyOptions& options) {
+  std::vector<std::string> words = options.experiments;
+  words.insert(words.end(), {"--data", options.data});
+  for (const std::string& option : options.set) words.insert(words.end(), {"--set", option});
+  if (options.dense) words.push_back("--dense");
+  return words;
+}
+
+}  // namespace corral

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/study/study_call.h"
+
+namespace corral {
+
+/// What `evaluate`, `plan` and `submit` have in common: the study that is asked for, as typed.
+struct StudyOptions {
+  std::vector<std::string> experiments;
+  std::string data;
+  std::vector<std::string> set;
+  bool dense = false;
+};
+void add_study_options(CLI::App& command, StudyOptions& options);
+
+/// Throws UsageError for --set, IoError for what cannot be read.
+StudyCall study_call(const StudyOptions& options);
+WorkList work_list_of(const StudyOptions& options);
+
+/// The words of the call behind the name of the command.
+std::vector<std::string> words_of(const StudyOptions& options);
+
+}  // namespace corral

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/study_text.h"
+
+#include <algorithm>
+#include <map>
+
+#include "apps/runtime/output.h"
+#include "apps/runtime/text_table.h"
+
+namespace corral {
+namespace {
+
+constexpr std::size_t kMostWarnings = 5;
+
+/// As warnings; the study has them all.
+void say_some(const std::string& kind, const std::vector<std::string>& lines) {
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostWarnings); ++i) say("warning: " + kind + lines[i]);
+  if (lines.size() > kMostWarnings)
+    say("warning: " + std::to_string(lines.size() - kMostWarnings) + " more of this kind; --json lists all");
+}
+
+/// What is shown of a grouper in an experiment: the mean of its levels.
+struct Overview {
+  int levels = 0, pairs = 0, excluded = 0, misfit = 0, empty = 0, failed = 0;
+  std::vector<double> sums;  ///< of the headline measures
+};
+
+}  // namespace
+
+std::string overview_text(const std::vector<SummaryRow>& rows) {
+  const std::vector<const Measure*> headline = measures_with(kHeadline);
+  std::vector<std::pair<std::string, std::string>> order;
+  std::map<std::pair<std::string, std::string>, Overview> cells;
+  for (const SummaryRow& row : rows) {
+    const auto key = std::make_pair(row.experiment, row.method);
+    if (!cells.count(key)) order.push_back(key);
+    Overview& cell = cells[key];
+    cell.pairs += row.pairs, cell.excluded += row.excluded, cell.misfit += row.misfit;
+    cell.empty += row.empty, cell.failed += row.failed;
+    cell.sums.resize(headline.size());
+    if (row.pairs == 0) continue;
+    ++cell.levels;
+    for (std::size_t i = 0; i < headline.size(); ++i) cell.sums[i] += *row.of(headline[i]->name).value;
+  }
+  std::vector<std::string> header = {"experiment", "method", "pairs", "excluded", "misfit", "empty", "failed"};
+  for (const Measure* measure : headline) header.push_back(measure->title);
+  TextTable table(header);
+  for (const auto& key : order) {
+    const Overview& cell = cells.at(key);
+    std::vector<std::string> line = {key.first,
+                                     key.second,
+                                     std::to_string(cell.pairs),
+                                     std::to_string(cell.excluded),
+                                     std::to_string(cell.misfit),
+                                     std::to_string(cell.empty),
+                                     std::to_string(cell.failed)};
+    for (std::size_t i = 0; i < headline.size(); ++i)
+      line.push_back(cell.levels > 0 ? fixed(cell.sums[i] / cell.levels, headline[i]->decimals) : "");
+    table.add(line);
+  }
+  return table.str() +
+         "Means over the levels of an experiment, at each level over its pairs; an empty selection has precision and\n"
+         "recall 0, pairs without correct matches are excluded, and so are those whose truth\n"
+         "does not fit the surfaces (misfit). success: share of pairs whose refined mean error is at\n"
+         "most 5 pr. summary.csv has every level.\n";
+}
+
+std::string counts_text(const StudyOutcome& outcome) {
+  return std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed" +
+         (outcome.failed > 0 ? " (records.csv says why)" : "");
+}
+
+void say_study(const StudyOutcome& outcome) {
+  say_some("truth does not fit: ", outcome.misfits);
+  say_some("", outcome.warnings);
+}
+
+}  // namespace corral

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/study/study.h"
+
+namespace corral {
+
+/// A table for the terminal: each grouper in each experiment, by its means over the levels.
+std::string overview_text(const std::vector<SummaryRow>& rows);
+
+/// "463 pairs, 2 failed (records.csv says why)".
+std::string counts_text(const StudyOutcome& outcome);
+
+/// Warns on stderr of data that make results wrong, the first few of each kind.
+void say_study(const StudyOutcome& outcome);
+
+}  // namespace corral

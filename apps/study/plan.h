@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/study/work_list.h"
+
+namespace corral {
+
+/// What a unit is expected to take, from the sizes of its files alone: nothing is read before work begins.
+///
+///   V = bytes / 40 of the source, W of the target     M = V / (2 r^2) matches, r = the detector's length in pr
+///   time = a + b (V + W) + c M W + per call of a grouper (d M + e M^2) + dense f (V + W)
+///
+/// Whole numbers throughout, so that every machine finds the same. The constants were fitted to recorded times (paper/README.md
+/// says how far they are off): the split needs their proportions, `corral plan --like` scales the times to a machine.
+struct UnitEstimate {
+  std::uint64_t microseconds = 0;  ///< on one processor
+  std::uint64_t bytes = 0;         ///< at most at a time
+};
+/// The estimates of all units. A file that is not there has the size 0; its pair fails soon.
+std::vector<UnitEstimate> estimate_units(const WorkList& list);
+
+/// The shard of each unit, 1 .. shards: the largest unit first, each to the shard with the least work so far, the first of
+/// those. It depends on the estimates alone, and so is the same on every machine that has the same data.
+std::vector<int> split_units(const std::vector<UnitEstimate>& estimates, int shards);
+
+/// What a shard is expected to take.
+struct ShardPlan {
+  int pairs = 0;          ///< units, that is pairs in one way of matching
+  double seconds = 0;     ///< on one processor
+  double peak_bytes = 0;  ///< with one pair at a time
+};
+std::vector<ShardPlan> plan_shards(const std::vector<UnitEstimate>& estimates, int shards);
+
+}  // namespace corral

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "apps/study/study_call.h"
+
+#include <filesystem>
+
+#include "apps/study/experiment_options.h"
+
+namespace corral {
+
+StudyCall study_call(const std::vector<std::string>& experiments, const std::string& data) {
+  StudyCall call;
+  call.data = data;
+  for (const std::string& name : experiments) call.experiments.push_back({name, experiment_text(name)});
+  return call;
+}
+
+WorkList work_list_of(const StudyCall& call) {
+  std::vector<Experiment> experiments;
+  for (const auto& [path, text] : call.experiments) {
+    experiments.push_back(parse_experiment(path, text));
+    experiments.back().dense = experiments.back().dense || call.dense;
+    override_options(experiments.back(), call.options);
+  }
+  return make_work_list(std::move(experiments), call.data);
+}
+
+Json to_json(const StudyCall& call) {
+  Json experiments = Json::array();
+  for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
+  return {{"experiments", experiments},
+          {"data", std::filesystem::absolute(call.data).lexically_normal().string()},
+          {"options", call.options},
+          {"dense", call.dense}};
+}
+
+StudyCall study_call_of(const Json& json) {
+  StudyCall call;
+  for (const Json& each : json.at("experiments")) call.experiments.push_back({each.at("path"), each.at("text")});
+  call.data = json.at("data");
+  call.options = json.at("options").get<OptionsByName>();
+  call.dense = json.at("dense");
+  return call;
+}
+
+}  // namespace corral

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/runtime/json.h"
+#include "apps/study/work_list.h"
+
+namespace corral {
+
+/// What a study is asked for, whole: from it the same work list follows wherever the data sets are.
+struct StudyCall {
+  struct ExperimentText {
+    std::string path, text;
+  };
+  std::vector<ExperimentText> experiments;  ///< as read: files, or built-in experiments
+  std::string data;                         ///< a data set, or a folder of data sets
+  OptionsByName options;                    ///< of --set
+  bool dense = false;
+};
+
+/// Reads the experiments (files, or names of built-in ones). Throws IoError.
+StudyCall study_call(const std::vector<std::string>& experiments, const std::string& data);
+
+/// Throws IoError (an experiment or a manifest of the data), InvalidInput (options that the experiments do not accept).
+WorkList work_list_of(const StudyCall& call);
+
+/// The same call with the absolute path of its data, as it is kept beside results; and back. Throws Json::exception.
+Json to_json(const StudyCall& call);
+StudyCall study_call_of(const Json& json);
+
+}  // namespace corral
