@@ -21,7 +21,7 @@ constexpr std::uint64_t kMost = std::uint64_t{1} << 50;  // microseconds, bytes:
 std::uint64_t keypoints_of(const WorkUnit& unit, std::uint64_t vertices) {
   const double length = parse_double(keypoint_length(unit.matching).value).value_or(1);
   const auto thousandths = static_cast<std::uint64_t>(std::llround(1000 * std::min(std::max(length, 0.1), 1000.0)));
-  return std::min({vertices, vertices * 500'000 / (thousandths * thousandths), std::uint64_t{1'000'000}});
+  return std::min({vertices, vertices * 166'667 / (thousandths * thousandths), std::uint64_t{1'000'000}});
 }
 
 std::uint64_t size_of(const std::string& file) {

@@ -148,6 +148,13 @@ TEST_F(Shards, DataThatChangedInBetweenAreNamed) {
   EXPECT_THAT(merge("run").err, AllOf(HasSubstr("another content of"), HasSubstr("data/b3r/m")));
 }
 
+TEST_F(Shards, NothingIsLostOrDoneTwiceWhenTheyAreKilled) {
+  const std::string line = "cd '" + (place_ / "") + "' && '" CORRAL_SOURCE_DIR "/tests/interruption' '" CORRAL_PROGRAM
+                           "' data 30 small.toml >log 2>&1";
+  EXPECT_EQ(std::system(line.c_str()), 0) << place_.text("log");
+  EXPECT_THAT(place_.text("log"), HasSubstr("30 kills, "));
+}
+
 TEST_F(Shards, ThePlanIsTheSplit) {
   const auto plan = place_.corral("plan small.toml --data data --shards 4 --json").json();
   EXPECT_EQ(plan["pairs"], 6);
