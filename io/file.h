@@ -10,7 +10,8 @@ namespace corral {
 std::string read_file(const std::string& path);
 
 /// Writes a file whole or not at all: to a temporary file beside it, which then replaces it. Pipes and devices are written
-/// to directly. Throws IoError, and leaves an existing file as it was.
+/// to directly. When it returns, the file survives a power cut. Throws IoError, and leaves an existing file as it was; only if
+/// the last step fails, which puts the new name on the disk, the new file is there.
 void write_file(const std::string& path, const std::string& content);
 
 struct FileContent {
@@ -26,6 +27,9 @@ void check_writable(const std::string& path);
 
 /// Removes a file that an earlier call left, if it exists. Pipes and devices stay. Throws IoError.
 void remove_file(const std::string& path);
+
+/// Whether a file of this name is one that a call is writing, or that a killed one left.
+bool is_temporary(const std::string& name);
 
 /// Removes the temporary files that killed calls left in a folder and its subfolders. Throws IoError if the folder cannot be
 /// read.

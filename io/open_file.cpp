@@ -55,7 +55,9 @@ void OpenFile::close() {
 }
 
 void put_names_on_disk(const std::string& folder) {
-  OpenFile names(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC), folder);
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0 && errno == EACCES) return;  // may be written to, but not listed
+  const OpenFile names(descriptor, folder);
   // Some file systems refuse to sync a folder, as they do it by themselves or not at all.
   if (::fsync(names.descriptor()) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EINTR)
     fail_by_errno(folder, "be written");

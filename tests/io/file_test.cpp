@@ -248,6 +248,16 @@ TEST(WriteFiles, EachHasAPlaceOfItsOwn) {
               }),
               HasSubstr("named for two outputs"));
   EXPECT_TRUE(folder.names().empty());
+  make_folder(folder / "below");
+  fs::create_symlink("below", folder / "other");
+  fs::create_symlink("below/a", folder / "link");
+  for (const char* name : {"other/a", "link"})
+    EXPECT_THAT(io_error_of([&] {
+                  write_files({{folder / "below/a", "1"}, {folder / name, "2"}});
+                }),
+                HasSubstr("named for two outputs"));
+  EXPECT_TRUE(fs::is_empty(folder / "below"));
+  write_files({{folder / "below/a", "1"}, {folder / "a", "2"}, {"/dev/null", "3"}, {"/dev/null", "4"}});
 }
 
 TEST(RemoveLeftovers, TakesAwayWhatAKilledWriteLeft) {
@@ -260,6 +270,9 @@ TEST(RemoveLeftovers, TakesAwayWhatAKilledWriteLeft) {
   EXPECT_EQ(folder.names().size(), others.size() + 1);
   EXPECT_TRUE(std::filesystem::is_empty(folder / "below"));
   for (const std::string& name : others) EXPECT_EQ(read_file(folder / name), "whole");
+  fs::create_symlink("nowhere", folder / "link");
+  remove_leftovers(folder.path());
+  EXPECT_TRUE(fs::is_symlink(folder / "link")) << "a link to nothing stops nothing";
   EXPECT_THAT(io_error_of([&] { remove_leftovers(folder / "none"); }), StartsWith(folder / "none: cannot be read"));
 }
 
