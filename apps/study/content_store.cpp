@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "io/file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -120,23 +119,18 @@ std::string content_hash(const std::string& content) {
   return text;
 }
 
-ContentStore::ContentStore(std::string folder) : folder_(std::move(folder)) { make_folder(folder_); }
+ContentStore::ContentStore(std::string folder, std::uint64_t limit_bytes) : folder_(std::move(folder), limit_bytes) {}
 
 std::optional<std::string> ContentStore::load(const std::string& key) const {
-  try {
-    const std::string file = read_file(folder_ + "/" + key);
-    std::string content = file.size() < kHashSize ? std::string() : file.substr(kHashSize);
-    if (file.compare(0, kHashSize, content_hash(content)) == 0) return content;
-  } catch (const IoError&) {  // not there
-  }
-  return std::nullopt;
+  const std::optional<std::string> file = folder_.load(key);
+  if (!file || file->size() < kHashSize) return std::nullopt;
+  std::string content = file->substr(kHashSize);
+  if (file->compare(0, kHashSize, content_hash(content)) != 0) return std::nullopt;
+  return content;
 }
 
 void ContentStore::save(const std::string& key, const std::string& content) const {
-  try {
-    write_file(folder_ + "/" + key, content_hash(content) + content);
-  } catch (const IoError&) {  // a full disk: the pair has its answer all the same
-  }
+  folder_.save(key, content_hash(content) + content);
 }
 
 std::optional<Descriptors> ContentStore::descriptors(const std::string& key) const {

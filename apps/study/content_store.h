@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/study/cache_folder.h"
 #include "kernel/correspondence_set.h"
 #include "kernel/surface/descriptors.h"
 
@@ -19,11 +20,13 @@ struct StoredMatches {
   int source_keypoints = 0;
 };
 
-/// Intermediate results by the hash of everything they depend on. A result that is missing, damaged or could not be written
-/// is absent, and is computed again.
+/// Intermediate results by the hash (content_hash) of everything they depend on. A result that is missing, damaged or could
+/// not be written is absent, and is computed again.
 class ContentStore {
  public:
-  explicit ContentStore(std::string folder);  ///< throws IoError if it cannot be created
+  /// In a folder that may be shared (CacheFolder). Where a limit is given, all files together have no more bytes than that, and
+  /// those that were used longest ago are deleted. Throws IoError if the folder cannot be created.
+  explicit ContentStore(std::string folder, std::uint64_t limit_bytes = 0);
 
   std::optional<Descriptors> descriptors(const std::string& key) const;
   std::optional<StoredMatches> matches(const std::string& key) const;
@@ -33,7 +36,7 @@ class ContentStore {
  private:
   std::optional<std::string> load(const std::string& key) const;
   void save(const std::string& key, const std::string& content) const;
-  std::string folder_;
+  CacheFolder folder_;
 };
 
 }  // namespace corral

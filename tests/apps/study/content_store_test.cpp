@@ -79,6 +79,21 @@ TEST(ContentStore, CountsAreCheckedBeforeTheyAreBelieved) {
   }
 }
 
+TEST(ContentStore, HasALimit) {
+  const ScratchFolder folder;
+  CorrespondenceSet matches;
+  matches.source_points = matches.target_points = Points::Ones(3, 3);
+  const std::string key = content_hash("a"), other_key = content_hash("b");
+  ContentStore(folder.path()).put(key, StoredMatches{matches, 3});
+  const std::uint64_t bytes = text_of(folder / key).size();
+  ContentStore(folder.path(), bytes - 1).put(other_key, StoredMatches{matches, 3});
+  EXPECT_EQ(folder.names(), std::vector<std::string>{key}) << "too large, and worth no other";
+  const ContentStore store(folder.path(), bytes);
+  store.put(other_key, StoredMatches{matches, 3});
+  EXPECT_FALSE(store.matches(key));
+  EXPECT_TRUE(store.matches(other_key));
+}
+
 TEST(ContentHash, IsThePublishedFunction) {
   EXPECT_EQ(content_hash(""), "99aa06d3014798d86001c324468d497f");  // XXH3, 128 bits
   EXPECT_NE(content_hash("a"), content_hash("b"));
