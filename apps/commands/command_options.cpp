@@ -202,13 +202,36 @@ ViewOptions view_options(const SensorSettings& settings) {
   return options;
 }
 
+std::optional<std::uint64_t> parse_size(const std::string& text) {
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+  std::string unit = text.substr(std::min(text.find_first_not_of(' ', digits), text.size()));
+  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (!unit.empty() && unit.back() == 'b') unit.pop_back();
+  const bool is_binary = unit.size() == 2 && unit.back() == 'i';
+  if (is_binary) unit.pop_back();
+  const std::size_t power = std::string("kmgtp").find(unit) + 1;  // of the empty unit too: 1
+  const std::optional<double> number = parse_double(text.substr(0, digits));
+  if (!number || unit.size() > 1 || power == 0) return std::nullopt;
+  const double bytes = *number * std::pow(is_binary ? 1024 : 1000, unit.empty() ? 0 : static_cast<double>(power));
+  if (!(bytes < 9e18)) return std::nullopt;
+  return static_cast<std::uint64_t>(bytes);
+}
+
+CLI::Option* add_size(CLI::App& command, const std::string& option, std::uint64_t& bytes, const std::string& purpose) {
+  const auto to_bytes = [](std::string& text) {
+    const std::optional<std::uint64_t> size = parse_size(text);
+    if (!size) return "found '" + text + "', expected a size such as 500MB or 1.5GB";
+    text = std::to_string(*size);
+    return std::string();
+  };
+  return command.add_option(option, bytes, purpose)->type_name("SIZE")->transform(CLI::Validator(to_bytes, ""));
+}
+
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
   bytes = static_cast<std::uint64_t>(half_of_memory());
-  command
-      .add_option("--memory-limit", bytes,
-                  "Most memory that a grouper may use, such as 500MB or 2GB; one that would need more is not called "
-                  "(default: half of the machine's)")
-      ->transform(CLI::AsSizeValue(true));
+  add_size(command, "--memory-limit", bytes,
+           "Most memory that a grouper may use, such as 500MB or 2GB; one that would need more is not called "
+           "(default: half of the machine's)");
 }
 
 }  // namespace corral

@@ -67,6 +67,11 @@ struct SensorSettings {
 void add_sensor_options(CLI::App& command, SensorSettings& settings);
 ViewOptions view_options(const SensorSettings& settings);
 
+/// A number of bytes: "1000", "500MB", "1.5GB", "2GiB"; in any case of letters. Absent if it is none.
+std::optional<std::uint64_t> parse_size(const std::string& text);
+/// An option whose value is one.
+CLI::Option* add_size(CLI::App& command, const std::string& option, std::uint64_t& bytes, const std::string& purpose);
+
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);
 

@@ -132,6 +132,23 @@ TEST(CacheFolder, UnfinishedFilesGoWhenNobodyCanBeWritingThem) {
   EXPECT_LE(bytes_in(folder.path()), 1000U) << "but it takes room";
 }
 
+// What is being written takes room before it is there.
+TEST(CacheFolder, ThreadsTogetherKeepToTheLimit) {
+  const ScratchFolder folder;
+  const CacheFolder cache(folder.path(), 8000);
+  std::vector<std::thread> threads;
+  std::vector<std::uint64_t> most(6);
+  for (std::size_t i = 0; i < most.size(); ++i)
+    threads.emplace_back([&, i] {
+      for (int round = 0; round < 12; ++round) {
+        cache.save(key(100 * round + static_cast<int>(i)), std::string(2000, 'x'));
+        most[i] = std::max(most[i], bytes_in(folder.path()));
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(most, ::testing::Each(::testing::Le(8000U)));
+}
+
 /// Saves and loads as a study does; whether every file that was loaded was whole.
 bool use(const CacheFolder& cache, int seed) {
   bool is_whole = true;
