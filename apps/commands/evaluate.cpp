@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/commands/study_options.h"
 #include "apps/commands/study_text.h"
 #include "apps/runtime/output.h"
@@ -97,6 +97,7 @@ std::string command_line(const Settings& settings) {
   if (settings.shard) line += " --shard " + *settings.shard;
   if (settings.jobs) line += " --jobs " + std::to_string(*settings.jobs);
   if (!settings.study.cache.empty()) line += " --cache " + settings.study.cache;
+  if (settings.study.cache_limit > 0) line += " --cache-limit " + std::to_string(settings.study.cache_limit);
   return line + (settings.json ? " --json" : "");
 }
 
@@ -151,6 +152,8 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->add_option("--cache", settings->study.cache,
                    "Folder for features and matches, which studies may share (default: in the folder of the study)")
       ->type_name("FOLDER");
+  add_size(*command, "--cache-limit", settings->study.cache_limit,
+           "Most bytes of that folder, such as 20GB: what was used longest ago is deleted (default: no limit)");
   command->add_flag("--json", settings->json, "A short summary as JSON instead of the table");
   command->footer(footer());
   command->callback([settings, &action] { action = [settings] { return evaluate(*settings); }; });

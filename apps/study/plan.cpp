@@ -93,13 +93,14 @@ std::vector<int> split_units(const std::vector<UnitEstimate>& estimates, int sha
   return shard_of;
 }
 
-std::vector<ShardPlan> plan_shards(const std::vector<UnitEstimate>& estimates, int shards) {
+std::vector<ShardPlan> plan_shards(const std::vector<UnitEstimate>& estimates, int shards,
+                                   const std::vector<double>& seconds) {
   const std::vector<int> shard_of = split_units(estimates, shards);
   std::vector<ShardPlan> plans(static_cast<std::size_t>(shards));
   for (std::size_t unit = 0; unit < estimates.size(); ++unit) {
     ShardPlan& plan = plans[static_cast<std::size_t>(shard_of[unit] - 1)];
     ++plan.pairs;
-    plan.seconds += static_cast<double>(estimates[unit].microseconds) / 1e6;
+    plan.seconds += seconds.empty() ? estimates[unit].seconds() : seconds[unit];
     plan.peak_bytes = std::max(plan.peak_bytes, static_cast<double>(estimates[unit].bytes));
   }
   return plans;

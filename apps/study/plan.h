@@ -18,6 +18,8 @@ namespace corral {
 struct UnitEstimate {
   std::uint64_t microseconds = 0;  ///< on one processor
   std::uint64_t bytes = 0;         ///< at most at a time
+
+  double seconds() const { return static_cast<double>(microseconds) / 1e6; }
 };
 /// The estimates of all units. A file that is not there has the size 0; its pair fails soon.
 std::vector<UnitEstimate> estimate_units(const WorkList& list);
@@ -32,6 +34,8 @@ struct ShardPlan {
   double seconds = 0;     ///< on one processor
   double peak_bytes = 0;  ///< with one pair at a time
 };
-std::vector<ShardPlan> plan_shards(const std::vector<UnitEstimate>& estimates, int shards);
+/// `seconds`: the times of all units, where they are known better than by the estimates; the split follows those in any case.
+std::vector<ShardPlan> plan_shards(const std::vector<UnitEstimate>& estimates, int shards,
+                                   const std::vector<double>& seconds = {});
 
 }  // namespace corral

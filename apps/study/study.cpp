@@ -45,7 +45,7 @@ class Runner {
       : list_(list),
         folder_(settings.run),
         shard_(settings.shard),
-        store_(settings.cache.empty() ? (folder_ / "cache").string() : settings.cache),
+        store_(settings.cache.empty() ? (folder_ / "cache").string() : settings.cache, settings.cache_limit),
         inputs_(finished.inputs()),
         journal_(std::move(journal)),
         finished_(finished) {

@@ -52,7 +52,7 @@ WorkList work_list_of(const StudyJournals& study, const std::string& data) {
   return list;
 }
 
-double recorded_over_estimated(const std::string& folder) {
+RecordedTimes recorded_times(const std::string& folder) {
   const StudyJournals study = find_study(folder);
   const WorkList list = work_list_of(study);
   FinishedUnits finished(list, folder, {});
@@ -61,14 +61,16 @@ double recorded_over_estimated(const std::string& folder) {
     finished.add(reader, journal);
   }
   const std::vector<UnitEstimate> estimates = estimate_units(list);
+  RecordedTimes times;
   double recorded = 0, estimated = 0;
   for (std::size_t unit = 0; unit < estimates.size(); ++unit) {
     if (!finished.has(unit)) continue;
-    recorded += finished.seconds()[unit];
-    estimated += static_cast<double>(estimates[unit].microseconds) / 1e6;
+    recorded += times.seconds[unit_key(list.units[unit])] = finished.seconds()[unit];
+    estimated += estimates[unit].seconds();
   }
-  if (!(estimated > 0)) throw IoError(folder, "", "has no finished pairs, expected some whose times are recorded");
-  return recorded / estimated;
+  if (!(recorded > 0)) throw IoError(folder, "", "has no finished pairs, expected some whose times are recorded");
+  times.factor = recorded / estimated;
+  return times;
 }
 
 }  // namespace corral

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "apps/study/journal.h"
@@ -24,7 +25,11 @@ StudyJournals find_study(const std::string& folder);
 /// has become another one, or is that of another version of the program.
 WorkList work_list_of(const StudyJournals& study, const std::string& data = "");
 
-/// How much longer the recorded units of a study took than they are estimated to (plan.h): a factor for such a machine.
-double recorded_over_estimated(const std::string& folder);
+/// The times that the units of a study took, by unit_key.
+struct RecordedTimes {
+  std::unordered_map<std::string, double> seconds;
+  double factor = 1;  ///< how much longer these units took than they are estimated to (plan.h)
+};
+RecordedTimes recorded_times(const std::string& folder);
 
 }  // namespace corral

@@ -100,7 +100,7 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
   make_folder(folder.string());
   const FolderLock lock(folder.string());
   check_same_study(folder.string(), identity_of(list));
-  const ContentStore store(settings.cache.empty() ? (folder / "cache").string() : settings.cache);
+  const ContentStore store(settings.cache.empty() ? (folder / "cache").string() : settings.cache, settings.cache_limit);
   observer("matching");
   std::vector<StudyRecord> records;
   const auto& levels = experiment.info.levels;
