@@ -16,6 +16,7 @@ namespace corral {
 namespace {
 
 const std::vector<std::string> kColumns = {"pair", "source", "target", "truth"};
+const char* const kMatches = "matches";
 
 std::string one_of(const TomlTable& table, const std::string& key, const std::string& otherwise,
                    const std::vector<std::string>& values) {
@@ -52,20 +53,25 @@ void read_pairs(const std::string& path, Dataset& dataset) {
     columns[i] = table.column(kColumns[i]);
     if (columns[i] < 0) throw IoError(path, "header", "the column " + kColumns[i] + " is missing");
   }
+  const int matches = table.column(kMatches);
   for (const std::string& name : table.header)
-    if (std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end()) dataset.attributes.push_back(name);
+    if (name != kMatches && std::find(kColumns.begin(), kColumns.end(), name) == kColumns.end())
+      dataset.attributes.push_back(name);
   std::set<std::string> names;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto& cells = table.rows[row];
     const auto cell = [&](int i) { return cells[static_cast<std::size_t>(columns[i])]; };
     const std::string place = "pair " + std::to_string(row + 1);
     DatasetPair pair{cell(0), cell(1), cell(2), cell(3), {}};
+    if (matches >= 0) pair.matches = cells[static_cast<std::size_t>(matches)];
     if (!is_name(pair.name))
       throw IoError(path, place,
                     "the name " + corral::quoted(pair.name) + ": expected letters, digits and . _ + - only");
     if (!names.insert(pair.name).second)
       throw IoError(path, place, "the name " + corral::quoted(pair.name) + " occurs twice");
-    if (pair.source.empty() || pair.target.empty()) throw IoError(path, place, "a pair without source or target");
+    const bool has_neither = pair.source.empty() && pair.target.empty();
+    if (has_neither ? pair.matches.empty() : pair.source.empty() || pair.target.empty())
+      throw IoError(path, place, "a pair without source or target, expected both, or a table of matches");
     for (const std::string& attribute : dataset.attributes)
       pair.attributes.push_back(cells[static_cast<std::size_t>(table.column(attribute))]);
     dataset.pairs.push_back(std::move(pair));
@@ -121,9 +127,13 @@ std::string dataset_toml_text(const Dataset& dataset) {
 
 std::string pairs_csv_text(const Dataset& dataset) {
   CsvTable table{kColumns, {}};
+  const bool has_matches = std::any_of(dataset.pairs.begin(), dataset.pairs.end(),
+                                       [](const DatasetPair& pair) { return !pair.matches.empty(); });
+  if (has_matches) table.header.push_back(kMatches);
   table.header.insert(table.header.end(), dataset.attributes.begin(), dataset.attributes.end());
   for (const DatasetPair& pair : dataset.pairs) {
     table.rows.push_back({pair.name, pair.source, pair.target, pair.truth});
+    if (has_matches) table.rows.back().push_back(pair.matches);
     table.rows.back().insert(table.rows.back().end(), pair.attributes.begin(), pair.attributes.end());
   }
   return csv_text(table);

@@ -7,12 +7,18 @@
 
 namespace corral {
 
-/// Two surfaces of a data set. Paths are as written in pairs.csv: absolute, or relative to the folder of the set.
+/// Two surfaces of a data set, or a table of matches between them, or both. Paths are as written in pairs.csv: absolute, or
+/// relative to the folder of the set.
 struct DatasetPair {
   std::string name;                     ///< unique in its set; letters, digits, and . _ + - only
-  std::string source, target;           ///< mesh files
+  std::string source, target;           ///< mesh files; both empty if the pair is a table alone
   std::string truth;                    ///< transform file, target_from_source; empty if it is not known
   std::vector<std::string> attributes;  ///< one cell for each of Dataset::attributes; empty where unknown
+  std::string matches = {};             ///< table of matches; empty if the surfaces are to be matched
+
+  bool has_surfaces() const { return !source.empty(); }
+  /// source, target, truth, matches: empty where it names none.
+  std::vector<std::string> files() const { return {source, target, truth, matches}; }
 };
 
 /// A data set: a folder with dataset.toml and pairs.csv, and the files that they name.
@@ -36,10 +42,10 @@ constexpr char kRecipeName[] = "recipe.txt";
 /// Reads the manifest, but none of the files that it names.
 ///
 ///   dataset.toml   name (required), kind, units, resolution, provenance, licence, citation (a list)
-///   pairs.csv      pair,source,target,truth, then any attributes
+///   pairs.csv      pair,source,target,truth, then matches (optional) and any attributes
 ///
 /// Throws IoError naming file and place: an unknown or doubled key, a wrong kind, no pairs, a doubled or empty pair name,
-/// an empty source or target, an unfinished set.
+/// one side without the other, neither surfaces nor matches, an unfinished set.
 Dataset read_dataset(const std::string& folder);
 
 /// The two files as text; reading them back gives the same set.

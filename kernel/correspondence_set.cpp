@@ -5,6 +5,7 @@
 
 #include "kernel/all_finite.h"
 #include "kernel/error.h"
+#include "kernel/missing_column.h"
 
 namespace corral {
 namespace {
@@ -110,7 +111,7 @@ void require_columns(const CorrespondenceSet& matches, const std::string& who, s
     }
     const bool is_frame = column == Column::SourceFrames || column == Column::TargetFrames;
     if (absent)
-      throw InvalidInput(
+      throw MissingColumn(
           who, std::string("column ") + name, "absent",
           is_frame ? "nine values per match (in a file: the columns _frame_0 .. _frame_8)" : "one value per match");
   }

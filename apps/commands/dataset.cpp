@@ -159,7 +159,8 @@ int measure_all(const MeasureSettings& settings) {
   const Dataset dataset = read_dataset(settings.folder);
   std::vector<std::string> inputs = {dataset.path("pairs.csv"), dataset.path("dataset.toml")};
   for (const DatasetPair& pair : dataset.pairs)
-    for (const std::string& file : {pair.source, pair.target, pair.truth}) inputs.push_back(dataset.path(file));
+    for (const std::string& file : pair.files())
+      if (!file.empty()) inputs.push_back(dataset.path(file));
   keep_inputs(inputs, {settings.output});
   if (!settings.output.empty()) check_writable(settings.output);
   if (settings.write) check_writable(dataset.path("pairs.csv"));

@@ -10,9 +10,12 @@
 
 #include "apps/dataset/pair_sweep.h"
 #include "apps/pair/surface_warnings.h"
+#include "apps/pair/table_truth_fit.h"
 #include "apps/pair/truth_fit.h"
 #include "apps/runtime/text_table.h"
+#include "io/matches_file.h"
 #include "kernel/bounding_box.h"
+#include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
@@ -39,6 +42,23 @@ TruthFit fit_of(const SweptPair& pair) {
                    source >= target ? *pair.truth : pair.truth->inverse(), (source + target) / 2);
 }
 
+/// The table of a pair, and of one without surfaces its truth too.
+void check_table(const Dataset& dataset, const SweptPair& swept, std::vector<Finding>& findings) {
+  const std::string path = dataset.path(swept.pair.matches);
+  try {
+    const CorrespondenceSet matches = read_matches(path);
+    if (!swept.truth) return;
+    const TableTruthFit fit = fit_truth(matches, *swept.truth);
+    if (!fit.text.empty()) findings.push_back({swept.pair.name, swept.pair.truth, fit.text});
+    if (fit.name.empty())
+      findings.push_back({swept.pair.name, swept.pair.matches,
+                          "fewer than 3 of " + std::to_string(matches.size()) + " matches are correct within 4 pr",
+                          false});
+  } catch (const IoError& error) {
+    findings.push_back({swept.pair.name, swept.pair.matches, without_path(error.what(), path)});
+  }
+}
+
 PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   PairNotes notes;
   const auto find = [&](const std::string& file, const std::string& problem, bool is_error = true) {
@@ -47,6 +67,7 @@ PairNotes look_at(const Dataset& dataset, const SweptPair& swept) {
   find(swept.pair.source, swept.source.problem);
   find(swept.pair.target, swept.target.problem);
   find(swept.pair.truth, swept.truth_problem);
+  if (!swept.pair.matches.empty()) check_table(dataset, swept, notes.findings);
   notes.is_complete = swept.is_complete();
   if (!notes.is_complete) return notes;
   for (const auto& [file, side] : {std::pair{&swept.pair.source, &swept.source}, {&swept.pair.target, &swept.target}}) {

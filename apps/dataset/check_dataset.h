@@ -23,6 +23,7 @@ struct Finding {
 ///   files      that are missing, cannot be read, or hold no surface; truths that are not rigid motions
 ///   units      sides whose sizes differ by a factor of 10, 100 or 1000, in extent and resolution alike; truths whose
 ///              translation fits in other units
+///   tables     of matches that cannot be read, or of which hardly any is correct
 ///   truths     that do not fit, and what would; those that fit loosely are no error (TruthFit)
 ///   vertices   that make pr or coordinates useless (surface_warnings)
 ///   pr         that is unusual: more than 8 times the usual share of the mesh's diagonal on its side of the set, or less

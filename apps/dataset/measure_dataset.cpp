@@ -6,6 +6,8 @@
 
 #include "apps/pair/match_pair.h"
 #include "apps/runtime/text_table.h"
+#include "io/matches_file.h"
+#include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/scan/visibility.h"
@@ -20,11 +22,20 @@ std::optional<double> percent_without(const std::optional<double>& shared) {
   return 100 * (1 - *shared);
 }
 
-void measure_matches(const SweptPair& pair, double resolution, PairMeasures& measures) {
+CorrespondenceSet matches_of(const Dataset& dataset, const SweptPair& pair) {
+  if (!pair.pair.matches.empty()) try {
+      return read_matches(dataset.path(pair.pair.matches));
+    } catch (const IoError&) {  // 'corral dataset check' says why
+      return {};
+    }
   MatchSettings settings;
-  settings.resolution = to_text(resolution);
+  settings.resolution = to_text(pair_resolution(dataset, pair.source.resolution, pair.target.resolution));
   settings.threads = 1;  // the pairs already run in parallel
-  const CorrespondenceSet matches = match_pair(pair.source.mesh, pair.target.mesh, settings).matches;
+  return match_pair(pair.source.mesh, pair.target.mesh, settings).matches;
+}
+
+void measure_matches(const Dataset& dataset, const SweptPair& pair, PairMeasures& measures) {
+  const CorrespondenceSet matches = matches_of(dataset, pair);
   if (matches.size() == 0) return;
   const std::vector<bool> labels = label_correct(matches, *pair.truth, kCorrectMatch);
   measures.inlier_ratio =
@@ -64,8 +75,8 @@ std::vector<PairMeasures> measure_dataset(const Dataset& dataset, bool with_matc
   sweep_pairs(dataset, parallel, progress, [&](int i, const SweptPair& pair) {
     PairMeasures& measures = measured[static_cast<std::size_t>(i)];
     measures = measure_pair(dataset, pair);
-    if (with_matches && measures.overlap)
-      measure_matches(pair, pair_resolution(dataset, pair.source.resolution, pair.target.resolution), measures);
+    const bool can_match = measures.overlap || (pair.truth && !pair.pair.matches.empty());
+    if (with_matches && can_match) measure_matches(dataset, pair, measures);
   });
   return measured;
 }

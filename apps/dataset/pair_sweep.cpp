@@ -17,11 +17,6 @@ namespace {
 /// Number of pairs whose meshes are in memory at once: enough to keep the threads busy.
 constexpr int kBlock = 16;
 
-/// The text of an IoError without the file name at its start.
-std::string without_path(const std::string& message, const std::string& path) {
-  return message.rfind(path, 0) == 0 ? message.substr(path.size() + 2) : message;
-}
-
 template <class Number>
 std::string_view bytes_of(const Number* numbers, Eigen::Index count) {
   return {reinterpret_cast<const char*>(numbers), static_cast<std::size_t>(count) * sizeof(Number)};
@@ -76,7 +71,7 @@ void sweep_pairs(const Dataset& dataset, const ParallelFor& parallel, Progress& 
     for (int i = begin; i < end; ++i)
       for (const std::string& file : {pair(i).source, pair(i).target}) {
         const auto [place, is_new] = surfaces.try_emplace(file);
-        if (is_new) missing.emplace_back(&place->first, &place->second);
+        if (is_new && !file.empty()) missing.emplace_back(&place->first, &place->second);
       }
     parallel(static_cast<int>(missing.size()), [&](int i) {
       const auto& [file, surface] = missing[static_cast<std::size_t>(i)];
@@ -89,6 +84,10 @@ void sweep_pairs(const Dataset& dataset, const ParallelFor& parallel, Progress& 
     for (auto it = surfaces.begin(); it != surfaces.end();)
       it = last_use.at(it->first) < end ? surfaces.erase(it) : std::next(it);
   }
+}
+
+std::string without_path(const std::string& message, const std::string& path) {
+  return message.rfind(path, 0) == 0 ? message.substr(path.size() + 2) : message;
 }
 
 double pair_resolution(const Dataset& dataset, double source, double target) {

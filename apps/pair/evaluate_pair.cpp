@@ -5,6 +5,7 @@
 
 #include "apps/runtime/stopwatch.h"
 #include "apps/runtime/text_table.h"
+#include "kernel/missing_column.h"
 #include "kernel/surface/scan/visibility.h"
 #include "kernel/surface/search/diameter.h"
 
@@ -28,6 +29,17 @@ PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransfor
           source.vertices, corral::diameter(source.vertices)};
 }
 
+PairTruth table_truth(const CorrespondenceSet& matches, const RigidTransform& target_from_source, double threshold_pr) {
+  const std::vector<bool> labels = label_correct(matches, target_from_source, threshold_pr);
+  Points correct(std::count(labels.begin(), labels.end(), true), 3);
+  Eigen::Index next = 0;
+  for (std::size_t row = 0; row < labels.size(); ++row)
+    if (labels[row]) correct.row(next++) = matches.source_points.row(static_cast<Eigen::Index>(row));
+  PairTruth truth{target_from_source, std::move(correct), threshold_pr};
+  truth.rmse_points = matches.source_points;
+  return truth;
+}
+
 Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
                          double resolution) {
   return overlap_points(source, PointIndex(target.vertices), target_from_source, kOverlapPointsPr * resolution);
@@ -37,6 +49,8 @@ PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, d
   PoseErrors errors{rotation_error_deg(estimate, truth.target_from_source),
                     translation_error_pr(estimate, truth.target_from_source, resolution),
                     point_error(estimate, truth.target_from_source, truth.overlap, resolution), std::nullopt};
+  if (errors.points && truth.rmse_points.rows() > 0)
+    errors.points->rmse_pr = point_error(estimate, truth.target_from_source, truth.rmse_points, resolution)->rmse_pr;
   if (truth.diameter > 0)
     errors.add_share = point_error(estimate, truth.target_from_source, truth.vertices, truth.diameter)->mean_pr;
   return errors;
@@ -53,7 +67,7 @@ std::string MethodRecord::outcome() const {
 }
 
 MethodStatus MethodRecord::status() const {
-  if (!failure.empty()) return {is_too_large ? MethodState::TooLarge : MethodState::Failed, failure};
+  if (!failure.empty()) return {failure_state, failure};
   return status_of(pose);
 }
 
@@ -101,13 +115,18 @@ MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& g
   MethodRecord record;
   record.method = name;
   record.failure = too_large(grouper, matches.size(), memory_limit);
-  record.is_too_large = !record.failure.empty();
-  if (record.is_too_large) return record;
+  if (!record.failure.empty()) {
+    record.failure_state = MethodState::TooLarge;
+    return record;
+  }
   try {
     TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
     record.found = std::move(timed.found);
     record.time_ms = timed.time_ms;
     judge(record, matches, truth);
+  } catch (const MissingColumn& error) {
+    record.failure = error.what();
+    record.failure_state = MethodState::NotApplicable;
   } catch (const std::exception& error) {
     record.failure = *error.what() ? error.what() : "no reason given";
   }

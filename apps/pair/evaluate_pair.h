@@ -22,10 +22,14 @@ struct PairTruth {
   double threshold_pr = 4;  ///< largest residual of a correct match
   Points vertices{};        ///< all source vertices; empty where the mesh is not available
   double diameter = 0;      ///< of these, mesh units
+  Points rmse_points{};     ///< over which the RMSE is taken, if not over the overlap
 };
 /// The same with the overlap of the two surfaces and the extent of the source. `resolution`: mesh units per pr.
 PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
                      double resolution, double threshold_pr);
+
+/// Of a table without surfaces: a pose is judged over the source points of the correct matches, its RMSE over those of all.
+PairTruth table_truth(const CorrespondenceSet& matches, const RigidTransform& target_from_source, double threshold_pr);
 
 /// The source points whose true image has a target vertex within 4 pr.
 Points points_in_overlap(const Points& source, const Mesh& target, const RigidTransform& target_from_source,
@@ -48,8 +52,8 @@ bool is_registered(const std::optional<PoseErrors>& errors);
 /// One grouper on one pair. What could not be computed is absent.
 struct MethodRecord {
   std::string method;
-  std::string failure;        ///< why the grouper gave no answer; empty if it did
-  bool is_too_large = false;  ///< it was not called, because it would need more memory than allowed
+  std::string failure;                              ///< why the grouper gave no answer; empty if it did
+  MethodState failure_state = MethodState::Failed;  ///< or TooLarge: it was not called; or NotApplicable
   GroupingResult found;
   std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
   std::optional<GroupingScore> score;  ///< with a truth

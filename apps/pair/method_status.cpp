@@ -5,9 +5,8 @@ namespace corral {
 namespace {
 
 /// In the order of MethodState; those that end in a colon have a cause.
-const char* const kWords[] = {"refined",  "too few rows",  "degenerate geometry",
-                              "diverged", "not converged", "timed",
-                              "",         "too large: ",   "failed: "};
+const char* const kWords[] = {"refined", "too few rows", "degenerate geometry", "diverged", "not converged", "timed",
+                              "",        "too large: ",  "not applicable: ",    "failed: "};
 
 bool has_cause(MethodState state) { return state >= MethodState::TooLarge; }
 

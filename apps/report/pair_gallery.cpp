@@ -24,7 +24,9 @@ std::map<std::string, GalleryPair> pairs_of(const std::vector<StudyFolder>& runs
   for (const StudyFolder& run : runs)
     for (const StudyRecord& record : run.records) {
       const GalleryPair pair{&run, &record};
-      if (!record.selection.empty() && run.pairs.count(pair.name()) > 0) pairs.emplace(pair.name(), pair);
+      const auto found = run.pairs.find(pair.name());
+      if (!record.selection.empty() && found != run.pairs.end() && !found->second.source.empty())
+        pairs.emplace(pair.name(), pair);
     }
   return pairs;
 }

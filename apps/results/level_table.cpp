@@ -163,6 +163,7 @@ std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
   std::vector<std::set<std::string>> untried(layout.tables.size(), if_tried);
   std::map<std::tuple<std::size_t, std::size_t, std::string>, MethodRecords> cells;
   for (const Place& place : layout.places) {
+    if (place.record->status.state == MethodState::NotApplicable) continue;  // not tried
     MethodRecords& rows = cells[{place.experiment, place.level, place.record->method}];
     rows.resize(level_of(place).pairs.size());
     rows[place.row].push_back(place.record);

@@ -78,8 +78,9 @@ StudyFolder read_study(const std::string& folder) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     if (std::filesystem::exists(std::filesystem::path(folder) / "units", ignored))
-      throw IoError(folder, "",
-                    "is an unfinished study; repeat the command that makes it to continue, or 'corral merge' its shards");
+      throw IoError(
+          folder, "",
+          "is an unfinished study; repeat the command that makes it to continue, or 'corral merge' its shards");
     throw IoError(path, "", "does not exist, expected a folder that 'corral evaluate' made");
   }
   try {
@@ -106,8 +107,10 @@ PairSelections read_selections(const std::string& path) {
   for (std::size_t column = 3; column < table.header.size(); ++column) selections.selected[table.header[column]];
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto& cells = table.rows[row];
-    selections.source_keypoints.push_back(index_cell(path, row, cells[0]));
-    selections.target_keypoints.push_back(index_cell(path, row, cells[1]));
+    if (!cells[0].empty() || !cells[1].empty()) {
+      selections.source_keypoints.push_back(index_cell(path, row, cells[0]));
+      selections.target_keypoints.push_back(index_cell(path, row, cells[1]));
+    }
     if (!cells[2].empty()) selections.residual_pr.push_back(number_cell(path, row, cells[2]));
     for (std::size_t column = 3; column < cells.size(); ++column) {
       if (cells[column] != "0" && cells[column] != "1")
@@ -116,8 +119,11 @@ PairSelections read_selections(const std::string& path) {
       if (cells[column] == "1") selections.selected[table.header[column]].push_back(static_cast<int>(row));
     }
   }
+  selections.matches = table.rows.size();
   if (!selections.residual_pr.empty() && selections.residual_pr.size() != table.rows.size())
     throw IoError(path, "", "some matches have a residual and some have none, expected all or none");
+  if (!selections.source_keypoints.empty() && selections.source_keypoints.size() != table.rows.size())
+    throw IoError(path, "", "some matches have keypoints and some have none, expected all or none");
   return selections;
 }
 
@@ -125,8 +131,12 @@ std::string selections_text(const PairSelections& selections, const std::vector<
   std::vector<std::string> cells = {"source_keypoint", "target_keypoint", "residual_pr"};
   cells.insert(cells.end(), methods.begin(), methods.end());
   std::string text = csv_line(cells);
-  for (std::size_t row = 0; row < selections.source_keypoints.size(); ++row) {
-    cells = {std::to_string(selections.source_keypoints[row]), std::to_string(selections.target_keypoints[row]),
+  const std::size_t rows =
+      std::max({selections.source_keypoints.size(), selections.residual_pr.size(), selections.matches});
+  const bool has_keypoints = !selections.source_keypoints.empty();
+  for (std::size_t row = 0; row < rows; ++row) {
+    cells = {has_keypoints ? std::to_string(selections.source_keypoints[row]) : std::string(),
+             has_keypoints ? std::to_string(selections.target_keypoints[row]) : std::string(),
              selections.residual_pr.empty() ? std::string() : to_text(selections.residual_pr[row])};
     for (const std::string& method : methods) {
       const auto found = selections.selected.find(method);

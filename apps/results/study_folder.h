@@ -35,7 +35,7 @@ struct ExperimentInfo {
 
 /// The surfaces of a pair of a study.
 struct StudyPair {
-  std::string source, target, truth;                             ///< files; the truth may be empty
+  std::string source, target, truth;                             ///< files; the surfaces or the truth may be empty
   double resolution = 0;                                         ///< mesh units per pr that the pair was judged with
   std::optional<int> source_points = {}, source_keypoints = {};  ///< of the source's surface, where the run says it
 };
@@ -51,12 +51,13 @@ struct StudyFolder {
 /// Reads manifest.json and records.csv. Throws IoError naming file and place.
 StudyFolder read_study(const std::string& folder);
 
-/// The matches and selections of a pair. A file of selections: source_keypoint,target_keypoint,residual_pr (empty without a
-/// truth), then one column of 0 and 1 for each grouper.
+/// The matches and selections of a pair. A file of selections: source_keypoint,target_keypoint (empty where matches are no
+/// vertices), residual_pr (empty without a truth), then one column of 0 and 1 for each grouper.
 struct PairSelections {
-  Indices source_keypoints, target_keypoints;  ///< vertices of the two meshes, one per match
+  Indices source_keypoints, target_keypoints;  ///< vertices of the two meshes, one per match; or empty
   std::vector<double> residual_pr;             ///< |T p - p'| of each match under the true pose, or empty
   std::map<std::string, Indices> selected;     ///< by method, ascending rows
+  std::size_t matches = 0;                     ///< how many, where neither keypoints nor residuals say so
 };
 PairSelections read_selections(const std::string& path);
 /// Columns of the methods in the order given.

@@ -28,6 +28,13 @@ std::size_t threshold_of(const WorkList& list, const StudySample& sample) {
                                   thresholds.begin());
 }
 
+/// The number of matches, or the percentage of correct ones among them; absent without a truth.
+std::optional<double> measured_value(const WorkList& list, const StudySample& sample, const UnitResult& result) {
+  if (list.experiments[static_cast<std::size_t>(sample.experiment)].sweep == Sweep::Matches) return result.matches;
+  if (!result.has_truth || result.matches == 0) return std::nullopt;
+  return 100.0 * result.true_matches[threshold_of(list, sample)] / result.matches;
+}
+
 StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t threshold) {
   record.status = task.status;
   record.selected = task.selected;
@@ -85,9 +92,9 @@ std::vector<StudyRecord> assemble_records(const WorkList& list, const std::vecto
   for (StudySample sample : list.samples) {
     const Experiment& experiment = list.experiments[static_cast<std::size_t>(sample.experiment)];
     const UnitResult& result = results[static_cast<std::size_t>(sample.unit)];
-    if (experiment.sweep == Sweep::Matches && result.failure.empty()) {
-      sample.value = result.matches;
-      sample.level = level_of(experiment.info.levels, result.matches);
+    if (is_measured(experiment.sweep) && result.failure.empty()) {
+      sample.value = measured_value(list, sample, result);
+      sample.level = sample.value ? level_of(experiment.info.levels, *sample.value) : -1;
       if (sample.level < 0) continue;
     }
     samples.push_back(std::move(sample));

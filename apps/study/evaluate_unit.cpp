@@ -10,9 +10,11 @@
 #include "apps/pair/normal_sides.h"
 #include "apps/pair/read_surface.h"
 #include "apps/pair/surface_warnings.h"
+#include "apps/pair/table_truth_fit.h"
 #include "apps/pair/truth_fit.h"
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
+#include "io/matches_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -70,31 +72,35 @@ PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   return scores;
 }
 
-/// One pair with its meshes, for all steps after the matching.
+/// The surfaces of a pair.
+struct PairSurfaces {
+  explicit PairSurfaces(const DatasetPair& pair)
+      : source(read_surface(pair.source)),
+        target(read_surface(pair.target)),
+        source_spacing(point_spacing(source.vertices)),
+        target_spacing(point_spacing(target.vertices)) {}
+
+  const Mesh source, target;
+  const PointSpacing source_spacing, target_spacing;
+};
+
+/// One pair, for all steps after the matching. What needs surfaces is left out where there are none.
 class PairStudy {
  public:
-  explicit PairStudy(const UnitWork& work)
-      : unit_(work.unit),
-        source_(read_surface(unit_.pair.source)),
-        target_(read_surface(unit_.pair.target)),
-        stored_(unit_matches(work, source_, target_)),
-        matches_(stored_.matches) {
-    const PointSpacing source = point_spacing(source_.vertices), target = point_spacing(target_.vertices);
-    for (const std::string& warning : surface_warnings(source_, source)) warnings_.push_back("source: " + warning);
-    for (const std::string& warning : surface_warnings(target_, target)) warnings_.push_back("target: " + warning);
-    const std::string units =
-        unit_warning(size_of(source_.vertices, source.resolution), size_of(target_.vertices, target.resolution));
-    if (unit_.pair.truth.empty()) {
-      if (!units.empty()) warnings_.push_back(units);
-      return;
-    }
-    truth_ = pair_truth(source_, target_, read_transform(unit_.pair.truth), matches_.resolution,
-                        unit_.thresholds_pr.front());
-    fit_ = fit_truth(source_, target_, truth_->target_from_source, source, target);
-    if (!units.empty() && !fit_->belongs()) warnings_.push_back(units);
+  explicit PairStudy(const UnitWork& work) : unit_(work.unit) {
+    if (unit_.pair.has_surfaces()) surfaces_.emplace(unit_.pair);
+    stored_ = unit_.pair.matches.empty() ? unit_matches(work, surfaces_->source, surfaces_->target)
+                                         : StoredMatches{read_matches(unit_.pair.matches), 0};
+    std::optional<RigidTransform> target_from_source;
+    if (!unit_.pair.truth.empty()) target_from_source = read_transform(unit_.pair.truth);
+    if (surfaces_)
+      look_at_surfaces(target_from_source);
+    else if (target_from_source)
+      look_at_table(*target_from_source);
+    if (!truth_) return;
     for (const double threshold : unit_.thresholds_pr)
       labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
-    warn_of_sides();
+    if (surfaces_ && unit_.pair.matches.empty()) warn_of_sides();
   }
 
   UnitResult evaluate() {
@@ -104,15 +110,16 @@ class PairStudy {
     }
     UnitResult result;
     result.resolution = matches_.resolution;
-    result.source_points = static_cast<int>(source_.vertices.rows());
+    if (surfaces_) result.source_points = static_cast<int>(surfaces_->source.vertices.rows());
     result.source_keypoints = stored_.source_keypoints;
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
     if (fit_) result.truth = fit_->name(), result.truth_text = fit_->text();
+    if (table_fit_) result.truth = table_fit_->name, result.truth_text = table_fit_->text;
     result.warnings = warnings_;
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
-    if (unit_.dense) {
-      DenseRefinement dense(source_, target_, matches_.resolution);
+    if (unit_.dense && surfaces_) {
+      DenseRefinement dense(surfaces_->source, surfaces_->target, matches_.resolution);
       dense.refine(records_, truth_);
       dense.refine(bounds, truth_);
     }
@@ -131,7 +138,8 @@ class PairStudy {
 
   void add_files(std::vector<FileContent>& files) const {
     for (const auto& [file, shown] : unit_.selections) {
-      PairSelections selections{matches_.source_keypoints, matches_.target_keypoints, residuals(), {}};
+      PairSelections selections{matches_.source_keypoints, matches_.target_keypoints, residuals(), {}, {}};
+      selections.matches = static_cast<std::size_t>(matches_.size());
       std::vector<std::string> methods;
       std::vector<StudyPose> poses;
       for (const int task : shown) {
@@ -151,14 +159,35 @@ class PairStudy {
   }
 
  private:
+  /// Judges the truth by them, and warns of what makes results wrong.
+  void look_at_surfaces(const std::optional<RigidTransform>& target_from_source) {
+    const auto& [source, target, source_spacing, target_spacing] = *surfaces_;
+    for (const std::string& warning : surface_warnings(source, source_spacing))
+      warnings_.push_back("source: " + warning);
+    for (const std::string& warning : surface_warnings(target, target_spacing))
+      warnings_.push_back("target: " + warning);
+    const std::string units = unit_warning(size_of(source.vertices, source_spacing.resolution),
+                                           size_of(target.vertices, target_spacing.resolution));
+    if (target_from_source) {
+      truth_ = pair_truth(source, target, *target_from_source, matches_.resolution, unit_.thresholds_pr.front());
+      fit_ = fit_truth(source, target, *target_from_source, source_spacing, target_spacing);
+    }
+    if (!units.empty() && !(fit_ && fit_->belongs())) warnings_.push_back(units);
+  }
+
+  void look_at_table(const RigidTransform& target_from_source) {
+    truth_ = table_truth(matches_, target_from_source, unit_.thresholds_pr.front());
+    table_fit_ = fit_truth(matches_, target_from_source);
+  }
+
   /// Where hardly any match is correct, opposed normals are a likely cause, and worth their time.
   void warn_of_sides() {
     const auto most = std::max_element(unit_.thresholds_pr.begin(), unit_.thresholds_pr.end());
     const std::vector<bool> labels = label_correct(matches_, truth_->target_from_source, *most);
     constexpr int kHardlyAny = 3;
     if (!fit_->belongs() || std::count(labels.begin(), labels.end(), true) >= kHardlyAny) return;
-    const auto opposed =
-        opposed_normals(source_, target_, truth_->target_from_source, matches_.resolution, unit_.matching);
+    const auto opposed = opposed_normals(surfaces_->source, surfaces_->target, truth_->target_from_source,
+                                         matches_.resolution, unit_.matching);
     if (is_opposed(opposed)) warnings_.push_back(opposed_warning(*opposed));
   }
 
@@ -201,11 +230,12 @@ class PairStudy {
   }
 
   const WorkUnit& unit_;
-  const Mesh source_, target_;
-  const StoredMatches stored_;
-  const CorrespondenceSet& matches_;
+  std::optional<PairSurfaces> surfaces_;
+  StoredMatches stored_;
+  const CorrespondenceSet& matches_ = stored_.matches;
   std::optional<PairTruth> truth_;
-  std::optional<TruthFit> fit_;
+  std::optional<TruthFit> fit_;             ///< of the surfaces
+  std::optional<TableTruthFit> table_fit_;  ///< where there are none
   std::vector<std::string> warnings_;
   std::vector<std::vector<bool>> labels_;  ///< at each threshold
   std::vector<MethodRecord> records_;      ///< one for each task

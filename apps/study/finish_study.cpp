@@ -34,8 +34,9 @@ void add_warnings(const WorkList& list, const std::vector<std::size_t>& units, c
 }  // namespace
 
 bool has_failed(const UnitResult& result) {
-  return !result.failure.empty() ||
-         std::any_of(result.tasks.begin(), result.tasks.end(), [](const TaskResult& task) { return !task.selected; });
+  return !result.failure.empty() || std::any_of(result.tasks.begin(), result.tasks.end(), [](const TaskResult& task) {
+    return !task.selected && task.status.state != MethodState::NotApplicable;
+  });
 }
 
 StudyOutcome outcome_of(const WorkList& list, const FinishedUnits& finished, const std::vector<std::size_t>& units) {

@@ -52,6 +52,7 @@ void FinishedUnits::add(JournalReader& reader, const JournalFile& journal) {
   while (auto entry = reader.next()) {
     const auto found = unit_of_key_.find(entry->unit);
     if (found == unit_of_key_.end() || !fits(entry->result, list_.units[found->second])) continue;
+    if (entry->inputs.size() != DatasetPair().files().size()) continue;
     if (entry->result.failure.empty() && !has_selections(found->second)) continue;
     add(found->second, std::move(*entry), journal);
   }
@@ -59,15 +60,14 @@ void FinishedUnits::add(JournalReader& reader, const JournalFile& journal) {
 
 void FinishedUnits::add(std::size_t unit, JournalEntry entry, const JournalFile& journal) {
   const DatasetPair& pair = list_.units[unit].pair;
-  note_input(pair.source, entry.source, journal);
-  note_input(pair.target, entry.target, journal);
-  note_input(pair.truth, entry.truth, journal);
+  const std::vector<std::string> names = pair.files();
+  for (std::size_t i = 0; i < names.size(); ++i) note_input(names[i], entry.inputs[i], journal);
   auto& files = unit_files_[unit];
-  UnitFiles now{std::move(entry.source), std::move(entry.target), std::move(entry.truth), journal};
-  const auto unreadable = [](const UnitFiles& of) { return of.source.empty() + of.target.empty() + of.truth.empty(); };
+  UnitFiles now{std::move(entry.inputs), journal};
+  const auto unreadable = [](const UnitFiles& of) { return std::count(of.hashes.begin(), of.hashes.end(), ""); };
   if (files) {
     if (!(files->journal.shard == journal.shard)) ++overlaps_[std::minmax(files->journal.shard, journal.shard)];
-    const int before = unreadable(*files), after = unreadable(now);
+    const auto before = unreadable(*files), after = unreadable(now);
     if (after == before && lasting_text(results_[unit]) != lasting_text(entry.result))
       throw IoError(journal.path, "",
                     "has another result of the pair " + pair.name + " than " + files->journal.path +
@@ -82,13 +82,12 @@ void FinishedUnits::add(std::size_t unit, JournalEntry entry, const JournalFile&
 void FinishedUnits::drop_unreadable() {
   for (std::size_t unit = 0; unit < list_.units.size(); ++unit) {
     auto& files = unit_files_[unit];
-    const DatasetPair& pair = list_.units[unit].pair;
-    const auto is_outdated = [&](const std::string& file, const std::string& hash) {
-      return hash.empty() && !hash_of(inputs_, file).empty();
-    };
-    if (!files || !(is_outdated(pair.source, files->source) || is_outdated(pair.target, files->target) ||
-                    is_outdated(pair.truth, files->truth)))
-      continue;
+    if (!files) continue;
+    const std::vector<std::string> names = list_.units[unit].pair.files();
+    bool is_outdated = false;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      is_outdated = is_outdated || (files->hashes[i].empty() && !hash_of(inputs_, names[i]).empty());
+    if (!is_outdated) continue;
     files.reset();
     results_[unit] = {};
   }

@@ -39,7 +39,7 @@ class FinishedUnits {
 
  private:
   struct UnitFiles {
-    std::string source, target, truth;  ///< hashes
+    std::vector<std::string> hashes;
     JournalFile journal;
   };
 

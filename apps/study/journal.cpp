@@ -58,18 +58,15 @@ JournalHeader header_of(const std::string& path, const std::string& content) {
 }
 
 std::string text_of(const JournalEntry& entry) {
-  return line_of({{"unit", entry.unit},
-                  {"inputs", {entry.source, entry.target, entry.truth}},
-                  {"seconds", entry.seconds},
-                  {"result", to_json(entry.result)}});
+  return line_of(
+      {{"unit", entry.unit}, {"inputs", entry.inputs}, {"seconds", entry.seconds}, {"result", to_json(entry.result)}});
 }
 
 std::optional<JournalEntry> entry_of(const std::string& content) {
   try {
     const Json json = Json::parse(content);
-    const Json& inputs = json.at("inputs");
-    return JournalEntry{json.at("unit"), inputs.at(0),       inputs.at(1),
-                        inputs.at(2),    json.at("seconds"), unit_result_of(json.at("result"))};
+    return JournalEntry{json.at("unit"), json.at("inputs").get<std::vector<std::string>>(), json.at("seconds"),
+                        unit_result_of(json.at("result"))};
   } catch (const Json::exception&) {
   } catch (const InvalidInput&) {
   }

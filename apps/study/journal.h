@@ -32,9 +32,9 @@ struct JournalHeader {
 
 /// A line of a journal: a unit that is finished.
 struct JournalEntry {
-  std::string unit;                   ///< unit_key
-  std::string source, target, truth;  ///< hashes of the files it was made from; empty where there was none to read
-  double seconds = 0;                 ///< that it took
+  std::string unit;                 ///< unit_key
+  std::vector<std::string> inputs;  ///< hashes of DatasetPair::files; empty where there was none to read
+  double seconds = 0;               ///< that it took
   UnitResult result;
 };
 

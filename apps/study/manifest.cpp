@@ -2,7 +2,7 @@
 #include "apps/study/manifest.h"
 
 #include <filesystem>
-#include <set>
+#include <unordered_set>
 
 #include "apps/runtime/build_info.h"
 #include "apps/runtime/json.h"
@@ -58,32 +58,51 @@ Json experiments_json(const WorkList& list) {
   return experiments;
 }
 
+/// An object with many entries, each name once: looking a name up in a Json takes as long as it has entries.
+class NamedEntries {
+ public:
+  /// The new entry; null if the name is there already.
+  Json* add(const std::string& name) {
+    if (!names_.insert(name).second) return nullptr;
+    return &entries_.emplace_back(name, Json()).second;
+  }
+  Json json() { return std::move(entries_); }
+
+ private:
+  std::unordered_set<std::string> names_;
+  Json::object_t entries_;
+};
+
 /// Files by data set and pair, so that the same data in another folder are the same.
 Json inputs_json(const WorkList& list, const InputHashes& inputs) {
-  Json json = Json::object();
+  NamedEntries pairs;
   for (const WorkUnit& unit : list.units) {
+    Json* pair = pairs.add(unit.dataset + "/" + unit.pair.name);
+    if (!pair) continue;
     const auto hash = [&](const std::string& file) { return hash_of(inputs, file); };
-    json[unit.dataset + "/" + unit.pair.name] = {
-        {"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
+    *pair = {{"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
+    if (!unit.pair.matches.empty()) (*pair)["matches"] = hash(unit.pair.matches);
   }
-  return json;
+  return pairs.json();
 }
 
 /// A pair that is matched in several ways is described as in the first experiment that uses it.
 Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
-  Json json = Json::object();
+  NamedEntries pairs;
   const auto absolute = [](const std::string& file) {
     return file.empty() ? file : fs::absolute(file).lexically_normal().string();
   };
   for (const StudySample& sample : list.samples) {
     const auto unit_number = static_cast<std::size_t>(sample.unit);
     const WorkUnit& unit = list.units[unit_number];
-    const std::string name = unit.dataset + "/" + unit.pair.name;
-    if (json.contains(name)) continue;
-    Json& pair = json[name] = {{"source", absolute(unit.pair.source)},
-                               {"target", absolute(unit.pair.target)},
-                               {"truth", absolute(unit.pair.truth)},
-                               {"resolution", 0}};
+    Json* const added = pairs.add(unit.dataset + "/" + unit.pair.name);
+    if (!added) continue;
+    Json& pair = *added;
+    pair = {{"source", absolute(unit.pair.source)},
+            {"target", absolute(unit.pair.target)},
+            {"truth", absolute(unit.pair.truth)},
+            {"resolution", 0}};
+    if (!unit.pair.matches.empty()) pair["matches"] = absolute(unit.pair.matches);
     if (unit_number >= results.size()) continue;
     const UnitResult& result = results[unit_number];
     pair["resolution"] = result.resolution;
@@ -91,7 +110,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
     pair["source_points"] = result.source_points;
     pair["source_keypoints"] = result.source_keypoints;
   }
-  return json;
+  return pairs.json();
 }
 
 }  // namespace
@@ -99,8 +118,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
 InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& units, int jobs) {
   InputHashes inputs;
   for (const std::size_t unit : units) {
-    const DatasetPair& pair = list.units[unit].pair;
-    for (const std::string& file : {pair.source, pair.target, pair.truth})
+    for (const std::string& file : list.units[unit].pair.files())
       if (!file.empty()) inputs[file];
   }
   std::vector<InputHashes::value_type*> files;

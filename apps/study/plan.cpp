@@ -15,13 +15,14 @@
 namespace corral {
 namespace {
 
+constexpr std::uint64_t kMostRows = 1'000'000;
 constexpr std::uint64_t kMost = std::uint64_t{1} << 50;  // microseconds, bytes: their sums stay in range
 
 /// How many keypoints a surface with so many vertices has: at most one in each disk of the detector's length.
 std::uint64_t keypoints_of(const WorkUnit& unit, std::uint64_t vertices) {
   const double length = parse_double(keypoint_length(unit.matching).value).value_or(1);
   const auto thousandths = static_cast<std::uint64_t>(std::llround(1000 * std::min(std::max(length, 0.1), 1000.0)));
-  return std::min({vertices, vertices * 166'667 / (thousandths * thousandths), std::uint64_t{1'000'000}});
+  return std::min({vertices, vertices * 166'667 / (thousandths * thousandths), kMostRows});
 }
 
 std::uint64_t size_of(const std::string& file) {
@@ -36,7 +37,10 @@ class Estimator {
   UnitEstimate operator()(const WorkUnit& unit) {
     const std::uint64_t source = bytes_of(unit.pair.source) / 40, target = bytes_of(unit.pair.target) / 40;
     const std::uint64_t vertices = source + target, calls = unit.tasks.size();
-    const std::uint64_t rows = keypoints_of(unit, source), described = keypoints_of(unit, target);
+    const bool is_table = !unit.pair.matches.empty();
+    const std::uint64_t rows =
+        is_table ? std::min(bytes_of(unit.pair.matches) / 100, kMostRows) : keypoints_of(unit, source);
+    const std::uint64_t described = is_table ? 0 : keypoints_of(unit, target);
     std::uint64_t nanoseconds = 10'000'000 + 3'000 * vertices + 40 * rows * described;
     nanoseconds += calls * (1'000 * rows + 4 * rows * rows);
     if (unit.dense) nanoseconds += calls * 10'000 * vertices;
@@ -48,6 +52,7 @@ class Estimator {
 
  private:
   std::uint64_t bytes_of(const std::string& file) {
+    if (file.empty()) return 0;
     const auto [place, is_new] = sizes_.try_emplace(file, 0);
     if (is_new) place->second = size_of(file);
     return place->second;

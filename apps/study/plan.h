@@ -10,7 +10,8 @@ namespace corral {
 
 /// What a unit is expected to take, from the sizes of its files alone: nothing is read before work begins.
 ///
-///   V = bytes / 40 of the source, W of the target     M = V / (6 r^2) matches, r = the detector's length in pr
+///   V = bytes / 40 of the source, W of the target     M = V / (6 r^2) matches, r = the detector's length in pr; of a table,
+///   bytes / 100
 ///   time = a + b (V + W) + c M W + per call of a grouper (d M + e M^2) + dense f (V + W)
 ///
 /// Whole numbers throughout, so that every machine finds the same. The constants were fitted to recorded times (paper/README.md

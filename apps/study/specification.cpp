@@ -68,10 +68,10 @@ void check_name(const TomlTable& table, const std::string& key, const std::strin
 
 /// The sweep of an attribute. A name that is not built in is a column of pairs.csv.
 Sweep sweep_of(const TomlTable& table, const std::string& attribute) {
-  static const std::map<std::string, Sweep> kOwn = {{"threshold_pr", Sweep::Threshold}, {"matches", Sweep::Matches},
-                                                    {"detector", Sweep::Choice},        {"descriptor", Sweep::Choice},
-                                                    {"frames", Sweep::Choice},          {"normals", Sweep::Choice},
-                                                    {"table_size", Sweep::TableSize}};
+  static const std::map<std::string, Sweep> kOwn = {
+      {"threshold_pr", Sweep::Threshold}, {"matches", Sweep::Matches},     {"inlier_ratio", Sweep::Ratio},
+      {"detector", Sweep::Choice},        {"descriptor", Sweep::Choice},   {"frames", Sweep::Choice},
+      {"normals", Sweep::Choice},         {"table_size", Sweep::TableSize}};
   const auto own = kOwn.find(attribute);
   if (own != kOwn.end()) return own->second;
   const std::size_t dot = attribute.find('.');
@@ -172,7 +172,7 @@ void read_options(const TomlTable& root, Experiment& experiment) {
 void read_varied(const TomlTable& root, Experiment& experiment) {
   const std::optional<TomlTable> table = root.table("vary");
   if (!table) return;
-  if (experiment.sweep != Sweep::Matches) root.fail("vary", "is for attribute = \"matches\" only");
+  if (!is_measured(experiment.sweep)) root.fail("vary", "is for attribute = \"matches\" or \"inlier_ratio\" only");
   for (const std::string& name : table->keys())
     for (const std::string& option : table->table(name).value().keys()) {
       if (!experiment.varied.empty()) table->fail(name, "expected one option to vary");
@@ -189,7 +189,7 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
   const ExperimentInfo& info = experiment.info;
   const bool is_positive_sweep = experiment.sweep == Sweep::Threshold || experiment.sweep == Sweep::Matches ||
                                  experiment.sweep == Sweep::TableSize;
-  const bool is_value_sweep = experiment.sweep != Sweep::Column && experiment.sweep != Sweep::Matches;
+  const bool is_value_sweep = experiment.sweep != Sweep::Column && !is_measured(experiment.sweep);
   for (const StudyLevel& level : info.levels) {
     if (is_value_sweep && level.low != level.high) table.fail("bins", info.attribute + " needs levels = [..]");
     if (is_positive_sweep && !(level.high > 0)) table.fail("levels", "expected numbers above zero");

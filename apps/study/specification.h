@@ -24,10 +24,14 @@ enum class Sweep {
   Column,     ///< a column of pairs.csv: each level has pairs of its own
   Threshold,  ///< threshold_pr: the same selections, scored again
   Matches,    ///< matches: pairs are binned by their number, over the values of a varied option
+  Ratio,      ///< inlier_ratio: pairs are binned by the share of correct matches, in percent
   Choice,     ///< a choice of the matching: detector, descriptor, frames or normals
   Option,     ///< name.option of a grouper, detector or descriptor
   TableSize,  ///< table_size: the time of groupers on tables of so many rows
 };
+
+/// Whether the value of a pair is known only when it has been matched.
+constexpr bool is_measured(Sweep sweep) { return sweep == Sweep::Matches || sweep == Sweep::Ratio; }
 
 /// One experiment: a file such as paper/experiments/noise.toml, whose keys paper/README.md explains.
 struct Experiment {
@@ -37,7 +41,7 @@ struct Experiment {
   MatchSettings matching;                 ///< its resolution holds if `resolution` is given; without options
   std::optional<std::string> resolution;  ///< else that of the data set
   OptionsByName options;                  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)
-  std::string varied;                     ///< of Sweep::Matches: "harris.radius_pr"; empty if there is none
+  std::string varied;                     ///< of a measured sweep: "harris.radius_pr"; empty if there is none
   std::vector<double> varied_values;
   int repeats = 1;  ///< of stochastic groupers; of all groupers for times
   std::uint64_t seed = 1;

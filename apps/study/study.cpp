@@ -86,9 +86,7 @@ class Runner {
     JournalEntry entry;
     entry.result = evaluate_unit({unit, inputs_, store_}, files);
     entry.unit = unit_key(unit);
-    entry.source = hash_of(inputs_, unit.pair.source);
-    entry.target = hash_of(inputs_, unit.pair.target);
-    entry.truth = hash_of(inputs_, unit.pair.truth);
+    for (const std::string& file : unit.pair.files()) entry.inputs.push_back(hash_of(inputs_, file));
     entry.seconds = watch.lap_ms() / 1000;
     for (FileContent& file : files) {
       file.path = (folder_ / file.path).string();

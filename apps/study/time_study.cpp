@@ -12,6 +12,7 @@
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
 #include "grouping/registry.h"
+#include "io/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 
@@ -35,8 +36,12 @@ std::vector<Table> find_tables(const WorkList& list, const InputHashes& inputs, 
   const auto is_enough = [&](const Table& table) { return table.matches.size() >= largest; };
   const auto wanted = static_cast<std::size_t>(experiment.tables);
   for (const WorkUnit& unit : list.units) {
-    const Mesh source = read_surface(unit.pair.source), target = read_surface(unit.pair.target);
-    tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target).matches});
+    if (unit.pair.matches.empty()) {
+      const Mesh source = read_surface(unit.pair.source), target = read_surface(unit.pair.target);
+      tables.push_back({&unit, unit_matches({unit, inputs, store}, source, target).matches});
+    } else {
+      tables.push_back({&unit, read_matches(unit.pair.matches)});
+    }
     if (static_cast<std::size_t>(std::count_if(tables.begin(), tables.end(), is_enough)) == wanted) break;
   }
   std::stable_sort(tables.begin(), tables.end(), [&](const Table& a, const Table& b) {

@@ -118,8 +118,10 @@ class Collector {
     const auto key = [](const WorkUnit& unit, const std::string& file) {
       return file + "\n" + matching_text(unit.matching);
     };
-    for (const WorkUnit& unit : list_.units) ++uses[key(unit, unit.pair.source)], ++uses[key(unit, unit.pair.target)];
+    for (const WorkUnit& unit : list_.units)
+      if (unit.pair.matches.empty()) ++uses[key(unit, unit.pair.source)], ++uses[key(unit, unit.pair.target)];
     for (WorkUnit& unit : list_.units) {
+      if (!unit.pair.matches.empty()) continue;
       const std::string& rule = unit.matching.resolution;
       unit.shares_source = rule != "mean" && rule != "target" && uses[key(unit, unit.pair.source)] > 1;
       unit.shares_target = rule != "mean" && rule != "source" && uses[key(unit, unit.pair.target)] > 1;
@@ -170,7 +172,7 @@ class Collector {
                    matching_at(experiment, levels[static_cast<std::size_t>(level)]));
       return;
     }
-    if (experiment.sweep == Sweep::Matches || experiment.sweep == Sweep::TableSize) {
+    if (is_measured(experiment.sweep) || experiment.sweep == Sweep::TableSize) {
       const MatchSettings matching = matching_at(experiment, levels.front());
       const auto add = [&](const MatchSettings& settings) {
         add_sample({index, 0, -1, std::nullopt, experiment.info.threshold_pr, "", {}}, dataset, pair, settings);
@@ -194,7 +196,7 @@ class Collector {
     sample.unit = place->second;
     if (is_new) {
       DatasetPair files = dataset.pairs[static_cast<std::size_t>(pair)];
-      for (std::string* file : {&files.source, &files.target, &files.truth})
+      for (std::string* file : {&files.source, &files.target, &files.truth, &files.matches})
         if (!file->empty()) *file = dataset.path(*file);
       list_.units.push_back({dataset.name, files, matching, {}, {}, false, false, false, {}});
     }

@@ -99,7 +99,7 @@ TEST(EvaluateMethod, AMethodThatNeedsTooMuchMemoryIsARecordAndIsNotAsked) {
   greedy.working_memory = [](int matches) { return 1e6 * matches; };
   const MethodRecord refused = evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 99e6);
   EXPECT_EQ(to_text(refused.status()), "too large: needs 100.0 MB, the limit is 99.0 MB");
-  EXPECT_TRUE(refused.is_too_large);
+  EXPECT_EQ(refused.failure_state, MethodState::TooLarge);
   EXPECT_FALSE(refused.score.has_value());
   EXPECT_FALSE(refused.pose.target_from_source.has_value());
   EXPECT_EQ(to_text(evaluate_method("mine", greedy, pair.made.matches, pair.truth, 1, 100e6).status()),

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "apps/commands/pair_run.h"
+
+#include <sstream>
+
+#include "apps/commands/command_files.h"
+#include "apps/commands/run_report.h"
+#include "apps/pair/dense_refinement.h"
+#include "apps/pair/normal_sides.h"
+#include "apps/pair/surface_warnings.h"
+#include "apps/pair/table_truth_fit.h"
+#include "apps/runtime/progress.h"
+#include "apps/runtime/workers.h"
+#include "io/file.h"
+#include "io/matches_file.h"
+
+namespace corral {
+namespace {
+
+/// Why the truth does not fit; surfaces in different units come first.
+std::string misfit_of(const PairRun& run) {
+  const std::string& units = run.pair.report.units;
+  return (units.empty() ? "" : units + "; ") + run.fit->text();
+}
+
+void explain(PairRun& run, const Mesh& target) {
+  const CorrespondenceSet& matches = run.pair.matches;
+  const Points seen =
+      points_in_overlap(matches.source_points, target, run.truth->target_from_source, matches.resolution);
+  run.counts = {matches.size(), static_cast<int>(seen.rows()), *run.true_matches(), run.truth->threshold_pr};
+  if (!run.fit->belongs()) run.counts.misfit = misfit_of(run);
+  run.counts.opposed_share = run.opposed_share;
+  run.counts.source_side = to_text(run.pair.report.source.normals);
+  run.counts.target_side = to_text(run.pair.report.target.normals);
+  run.explanations = explain_pair(run.counts, run.bounds[0], run.records);
+}
+
+struct Surfaces {
+  Mesh source, target;
+};
+
+/// Whether the truth fits, and which matches it makes correct.
+void judge_truth(PairRun& run, const RigidTransform& truth, const std::optional<Surfaces>& surfaces,
+                 double threshold_pr) {
+  const CorrespondenceSet& matches = run.pair.matches;
+  if (surfaces) {
+    const auto& [source, target] = *surfaces;
+    run.truth = pair_truth(source, target, truth, matches.resolution, threshold_pr);
+    const auto spacing = [](const PointSpacing& known, const Mesh& mesh) {  // known where the surfaces were matched
+      return known.resolution > 0 ? known : point_spacing(mesh.vertices);
+    };
+    run.fit = fit_truth(source, target, truth, spacing(run.pair.report.source.spacing, source),
+                        spacing(run.pair.report.target.spacing, target));
+    if (run.fit->belongs()) run.pair.report.units.clear();  // then the sizes are what they are
+    if (!run.fit->belongs()) run.pair.report.warnings.push_back("truth does not fit: " + misfit_of(run));
+  } else {
+    run.truth = table_truth(matches, truth, threshold_pr);
+    const TableTruthFit fit = fit_truth(matches, truth);
+    if (!fit.text.empty()) run.pair.report.warnings.push_back("truth does not fit: " + fit.text);
+  }
+  run.labels = label_correct(matches, truth, threshold_pr);
+  run.frames = frame_repeatability(matches, truth, run.labels);
+}
+
+/// Opposed normals are a likely cause where all correct matches do not register the pair.
+void compare_sides(PairRun& run, const Surfaces& surfaces, const MatchSettings& settings) {
+  if (!run.fit->belongs() || is_registered(run.bounds[0].errors)) return;
+  run.opposed_share = opposed_normals(surfaces.source, surfaces.target, run.truth->target_from_source,
+                                      run.pair.matches.resolution, settings);
+  if (is_opposed(run.opposed_share)) run.pair.report.warnings.push_back(opposed_warning(*run.opposed_share));
+}
+
+}  // namespace
+
+std::vector<std::string> method_names(const std::string& text) {
+  std::vector<std::string> names;
+  if (text == "all") {
+    for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
+    return names;
+  }
+  std::istringstream stream(text + ",");
+  for (std::string name; std::getline(stream, name, ',');) {
+    if (name.empty()) throw UsageError("--methods " + text + ": expected all, or names such as ss,gc");
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw UsageError("--methods: " + name + " occurs twice");
+    names.push_back(name);
+  }
+  return names;
+}
+
+PairRun evaluate(const RunSettings& settings) {
+  PairRun run;
+  run.methods = method_names(settings.methods);
+  const OptionsByName options = parse_set(settings.set);
+  for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
+  keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, files_of_run(settings.output));
+  std::optional<RigidTransform> truth;
+  if (!settings.truth.empty()) truth = read_truth(settings.truth);
+  std::optional<Surfaces> surfaces;
+  if (!settings.source.empty())
+    surfaces = {read_input(settings.source, settings.drop_stray), read_input(settings.target, settings.drop_stray)};
+  if (!settings.matches.empty()) run.pair.matches = read_matches(settings.matches);
+  if (!settings.output.empty()) {  // before the work, not after it
+    make_folder(settings.output);
+    check_writable(settings.output + "/run.json");
+  }
+  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense);
+  if (settings.matches.empty())
+    run.pair = match_pair(surfaces->source, surfaces->target, settings.match,
+                          {[&](const std::string& stage) { progress.begin(stage); }});
+  run.pair.report.resolution = run.pair.matches.resolution;
+  if (truth) {
+    progress.begin("overlap");
+    judge_truth(run, *truth, surfaces, settings.threshold_pr);
+  }
+  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+    progress.begin(run.methods[i]);
+    run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
+                                          static_cast<double>(settings.memory_limit)));
+  }
+  if (truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
+  if (truth && settings.matches.empty()) compare_sides(run, *surfaces, settings.match);
+  if (settings.dense) {
+    progress.begin("dense refinement");
+    DenseRefinement dense(surfaces->source, surfaces->target, run.pair.matches.resolution,
+                          workers(settings.match.threads));
+    dense.refine(run.records, run.truth);
+    dense.refine(run.bounds, run.truth);
+  }
+  if (settings.explain) explain(run, surfaces->target);
+  return run;
+}
+
+}  // namespace corral

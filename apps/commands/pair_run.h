@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/commands/command_options.h"
+#include "apps/pair/evaluate_pair.h"
+#include "apps/pair/explain.h"
+#include "apps/pair/match_pair.h"
+#include "apps/pair/truth_fit.h"
+
+namespace corral {
+
+/// What `corral run` is asked for.
+struct RunSettings {
+  std::string source, target;  ///< meshes; both empty if `matches` is all there is
+  std::string matches;         ///< a table of matches; empty if the meshes are to be matched
+  std::string methods = "all", output;
+  TruthSettings truth;
+  double threshold_pr = 4;
+  int repeat = 1;
+  std::uint64_t memory_limit = 0;
+  MatchSettings match;
+  std::vector<std::string> set;
+  bool drop_stray = false, dense = false, explain = false, json = false, verbose = false;
+};
+
+/// "all" or names of groupers between commas, each once. Throws UsageError.
+std::vector<std::string> method_names(const std::string& text);
+
+/// What came of it.
+struct PairRun {
+  std::vector<std::string> methods;
+  std::vector<ConfiguredGrouper> groupers;
+  MatchedPair pair;
+  std::optional<PairTruth> truth;
+  std::vector<MethodRecord> records;
+  std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the baseline
+  std::vector<bool> labels;                  ///< with a truth: which matches are correct
+  std::optional<FrameRepeatability> frames;  ///< with a truth
+  std::optional<TruthFit> fit;               ///< with a truth
+  std::optional<double> opposed_share;       ///< of normals, with a truth by which the pair is lost before the grouping
+  PairCounts counts;                         ///< with --explain
+  std::vector<Explanation> explanations;     ///< with --explain: of the pair, then of each grouper
+
+  std::optional<int> true_matches() const {
+    if (!truth) return std::nullopt;
+    return static_cast<int>(std::count(labels.begin(), labels.end(), true));
+  }
+};
+
+/// Matches, unless a table is given, then groups, refines and judges. Throws as what it calls.
+PairRun evaluate(const RunSettings& settings);
+
+}  // namespace corral
