@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
 #include "kernel/surface/mesh/mesh.h"
 
 namespace corral {
@@ -10,20 +15,39 @@ namespace corral {
 
 constexpr int kNoSide = -1;     ///< no other triangle has this edge
 constexpr int kManySides = -2;  ///< more than one other triangle has it
+constexpr int kLeftOut = -3;    ///< the triangle of this side itself is left out
 
-/// For each side that of the triangle across its edge, or one of the two above, however the triangles are wound.
+/// The vertices of a mesh by side. The triangles must outlive it.
+class Ends {
+ public:
+  explicit Ends(const Triangles& triangles)
+      : from_(triangles.data()), faces_(static_cast<int>(triangles.rows())), count_(3 * faces_) {}
+
+  int faces() const { return faces_; }
+  int count() const { return count_; }
+  int face(int side) const { return side < faces_ ? side : side < count_ - faces_ ? side - faces_ : side - 2 * faces_; }
+  int next(int side) const { return side < count_ - faces_ ? side + faces_ : side - 2 * faces_; }
+  int before(int side) const { return side < faces_ ? side + 2 * faces_ : side - faces_; }
+  std::array<int, 3> sides_of(int face) const { return {face, face + faces_, face + 2 * faces_}; }
+
+  int from(int side) const { return from_[side]; }
+  int to(int side) const { return from_[next(side)]; }
+  int low(int side) const { return std::min(from(side), to(side)); }
+  int high(int side) const { return std::max(from(side), to(side)); }
+  std::pair<int, int> edge(int side) const { return {low(side), high(side)}; }
+
+ private:
+  const int* from_;
+  int faces_, count_;
+};
+
+/// Entry of a table by side, face or vertex.
+inline std::size_t index(int number) { return static_cast<std::size_t>(number); }
+
+/// For each side that of the triangle across its edge, or one of the first two above, however the triangles are wound.
 Indices sides_across(const Triangles& triangles, Eigen::Index vertices);
 
 /// The triangles of each part that are wound against its majority; parts join across edges of two triangles.
 Indices wound_against_majority(const Triangles& triangles, const Indices& across);
-
-/// What Topology says of triangles that are all sound: every edge has one of them or two, wound alike, and those around a
-/// vertex form one fan.
-struct SoundEdges {
-  bool is_sound = false;
-  int components = 0, boundary_edges = 0, boundary_loops = 0;
-  double mean_edge_length = 0;  ///< summed in the order in which the triangles first name the edges
-};
-SoundEdges inspect_edges(const Points& vertices, const Triangles& triangles, const Indices& across);
 
 }  // namespace corral

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "kernel/surface/mesh/topology.h"
 
-// With OpenMesh 9, g++ 12 at -O3 gives false warnings of uninitialised values.
-#ifndef __clang__
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
-#include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "kernel/rigid_transform.h"
+#include "kernel/surface/mesh/fans.h"
 #include "kernel/surface/mesh/sides.h"
 
 namespace corral {
 namespace {
-
-using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 
 bool is_degenerate(const Mesh& mesh, Eigen::Index face) {
   const int a = mesh.triangles(face, 0), b = mesh.triangles(face, 1), c = mesh.triangles(face, 2);
@@ -32,7 +23,7 @@ bool is_degenerate(const Mesh& mesh, Eigen::Index face) {
   return !(triangle_area(mesh.vertices.row(a), mesh.vertices.row(b), mesh.vertices.row(c)) > 0);
 }
 
-/// The triangles of a mesh without degenerate ones, wound alike. They are copied only if any must change.
+/// The triangles of a mesh without degenerate ones, wound alike and joined. They are copied only if any must change.
 class SoundTriangles {
  public:
   explicit SoundTriangles(const Mesh& mesh) : given_(mesh.triangles) {
@@ -43,82 +34,76 @@ class SoundTriangles {
         if (!is_degenerate(mesh, face)) sound.push_back(face);
       changed_ = given_(sound, Eigen::all);
     }
-    across_ = sides_across(triangles(), mesh.vertices.rows());
-    reverse(wound_against_majority(triangles(), across_), mesh.vertices.rows());
+    Indices across = sides_across(triangles(), mesh.vertices.rows());
+    const Indices against = wound_against_majority(triangles(), across);
+    reversed_ = static_cast<int>(against.size());
+    if (reversed_ > 0) {
+      if (!changed_) changed_ = given_;
+      for (const int face : against) std::swap((*changed_)(face, 1), (*changed_)(face, 2));
+      across = sides_across(*changed_, mesh.vertices.rows());
+    }
+    joined_ = join_triangles(triangles(), std::move(across), mesh.vertices.rows());
   }
 
   const Triangles& triangles() const { return changed_ ? *changed_ : given_; }
-  const Indices& across() const { return across_; }
+  const JoinedTriangles& joined() const { return joined_; }
   int degenerate() const { return degenerate_; }
   int reversed() const { return reversed_; }
 
- private:
-  void reverse(const Indices& faces, Eigen::Index vertices) {
-    reversed_ = static_cast<int>(faces.size());
-    if (reversed_ == 0) return;
-    if (!changed_) changed_ = given_;
-    for (const int face : faces) std::swap((*changed_)(face, 1), (*changed_)(face, 2));
-    across_ = sides_across(*changed_, vertices);
+  /// Calls visit(side) once for each edge, in the order in which the triangles first name them.
+  template <class Visitor>
+  void visit_edges(Visitor&& visit) const {
+    const Ends ends(triangles());
+    for (int face = 0; face < ends.faces(); ++face)
+      for (const int side : ends.sides_of(face)) {
+        const int other = joined_.across[index(side)];
+        if (other == kNoSide || (other >= 0 && face < ends.face(other))) visit(side);
+      }
   }
 
+ private:
   const Triangles& given_;
   std::optional<Triangles> changed_;
-  Indices across_;
+  JoinedTriangles joined_;
   int degenerate_ = 0, reversed_ = 0;
 };
 
-/// The half-edges of sound triangles that are wound alike; counts the triangles that they cannot hold.
-HalfEdgeMesh half_edges(const Points& vertices, const Triangles& triangles, Topology& topology) {
-  // OpenMesh has one error stream for all threads, and neither its creation nor its use is thread-safe.
-  static std::mutex error_stream;
-  const std::lock_guard<std::mutex> lock(error_stream);
-  HalfEdgeMesh half;
-  for (Eigen::Index row = 0; row < vertices.rows(); ++row)
-    half.add_vertex({vertices(row, 0), vertices(row, 1), vertices(row, 2)});
-  // OpenMesh reports every face that it refuses on a stream of its own; here refusals are counted.
-  const bool was_enabled = omerr().is_enabled();
-  omerr().disable();
-  for (Eigen::Index face = 0; face < triangles.rows(); ++face) {
-    const auto corner = [&](int i) { return OpenMesh::VertexHandle(triangles(face, i)); };
-    topology.non_manifold_faces += !half.add_face(corner(0), corner(1), corner(2)).is_valid();
-  }
-  if (was_enabled) omerr().enable();
-  return half;
-}
-
-int count_components(const HalfEdgeMesh& half) {
-  std::vector<int> rank(half.n_vertices()), parent(half.n_vertices());
+/// Parts that share no vertex.
+int count_components(const Ends& ends, const Indices& across, Eigen::Index vertices) {
+  Indices rank(static_cast<std::size_t>(vertices)), parent(rank.size(), kNoSide);
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
-  for (int vertex = 0; vertex < static_cast<int>(half.n_vertices()); ++vertex) sets.make_set(vertex);
-  for (const auto edge : half.edges()) sets.union_set(edge.v0().idx(), edge.v1().idx());
-  std::vector<int> roots;
-  for (const auto edge : half.edges()) roots.push_back(sets.find_set(edge.v0().idx()));
-  std::sort(roots.begin(), roots.end());
-  return static_cast<int>(std::unique(roots.begin(), roots.end()) - roots.begin());
+  int components = 0;
+  for (int face = 0; face < ends.faces(); ++face) {
+    if (across[index(face)] == kLeftOut) continue;
+    int first = kNoSide;
+    for (const int side : ends.sides_of(face)) {
+      const int vertex = ends.from(side);
+      if (parent[index(vertex)] == kNoSide) sets.make_set(vertex), ++components;
+      const int other = sets.find_set(vertex);
+      if (first == kNoSide) first = other;
+      if (first == other) continue;
+      sets.link(first, other);
+      first = sets.find_set(first);
+      --components;
+    }
+  }
+  return components;
 }
 
-int count_boundary_loops(const HalfEdgeMesh& half) {
-  std::vector<char> seen(half.n_halfedges(), 0);
+int count_boundary_loops(const Ends& ends, const JoinedTriangles& joined) {
+  std::vector<char> seen(joined.across.size(), 0);
+  const auto following = [&](int side) {
+    const int start = joined.starts[index(ends.to(side))];
+    if (start != kManySides) return start;
+    return std::lower_bound(joined.following.begin(), joined.following.end(), std::pair(side, 0))->second;
+  };
   int loops = 0;
-  for (const auto start : half.halfedges()) {
-    if (!start.is_boundary() || seen[static_cast<std::size_t>(start.idx())]) continue;
+  for (int first = 0; first < ends.count(); ++first) {
+    if (joined.across[index(first)] != kNoSide || seen[index(first)]) continue;
     ++loops;
-    for (auto edge = start; !seen[static_cast<std::size_t>(edge.idx())]; edge = edge.next())
-      seen[static_cast<std::size_t>(edge.idx())] = 1;
+    for (int side = first; !seen[index(side)]; side = following(side)) seen[index(side)] = 1;
   }
   return loops;
-}
-
-/// Where edges or fans meet that are none of one surface, the counts depend on how half-edges join them.
-void walk_half_edges(const HalfEdgeMesh& half, Topology& topology) {
-  topology.components = count_components(half);
-  topology.boundary_loops = count_boundary_loops(half);
-  double length = 0;
-  for (const auto edge : half.edges()) {
-    topology.boundary_edges += edge.is_boundary();
-    length += half.calc_edge_length(edge);
-  }
-  if (half.n_edges() > 0) topology.mean_edge_length = length / static_cast<double>(half.n_edges());
 }
 
 /// Vertices at the place of an earlier one. By a table of hashes; where that is crowded, by sorting.
@@ -161,16 +146,13 @@ Points distinct_points(const Points& points) {
 }
 
 std::vector<Indices> vertex_rings(const Mesh& mesh) {
-  Topology unused;
   const SoundTriangles sound(mesh);
-  const HalfEdgeMesh half = half_edges(mesh.vertices, sound.triangles(), unused);
+  const Ends ends(sound.triangles());
   std::vector<Indices> rings(static_cast<std::size_t>(mesh.vertices.rows()));
-  // By edges, not by turning around each vertex: where two fans touch in a vertex, the turn would see one of them.
-  for (const auto edge : half.edges()) {
-    const int a = edge.v0().idx(), b = edge.v1().idx();
-    rings[static_cast<std::size_t>(a)].push_back(b);
-    rings[static_cast<std::size_t>(b)].push_back(a);
-  }
+  sound.visit_edges([&](int side) {
+    rings[index(ends.from(side))].push_back(ends.to(side));
+    rings[index(ends.to(side))].push_back(ends.from(side));
+  });
   for (Indices& ring : rings) std::sort(ring.begin(), ring.end());
   return rings;
 }
@@ -185,15 +167,19 @@ Topology inspect_topology(const Mesh& mesh) {
   const SoundTriangles sound(mesh);
   topology.degenerate_faces = sound.degenerate();
   topology.misoriented_faces = sound.reversed();
-  const SoundEdges edges = inspect_edges(mesh.vertices, sound.triangles(), sound.across());
-  if (!edges.is_sound) {
-    walk_half_edges(half_edges(mesh.vertices, sound.triangles(), topology), topology);
-    return topology;
-  }
-  topology.components = edges.components;
-  topology.boundary_edges = edges.boundary_edges;
-  topology.boundary_loops = edges.boundary_loops;
-  topology.mean_edge_length = edges.mean_edge_length;
+  topology.non_manifold_faces = sound.joined().left_out;
+  const Ends ends(sound.triangles());
+  topology.components = count_components(ends, sound.joined().across, mesh.vertices.rows());
+  topology.boundary_loops = count_boundary_loops(ends, sound.joined());
+  double length = 0;
+  int edges = 0;
+  sound.visit_edges([&](int side) {
+    topology.boundary_edges += sound.joined().across[index(side)] == kNoSide;
+    const Eigen::Vector3d step = mesh.vertices.row(ends.to(side)) - mesh.vertices.row(ends.from(side));
+    length += std::sqrt(step.x() * step.x() + step.y() * step.y() + step.z() * step.z());
+    ++edges;
+  });
+  if (edges > 0) topology.mean_edge_length = length / edges;
   return topology;
 }
 
