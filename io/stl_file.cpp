@@ -8,6 +8,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <map>
+#include <type_traits>
 
 #include "io/line_reader.h"
 #include "io/mesh_cleanup.h"
@@ -23,47 +24,44 @@ namespace {
 constexpr std::size_t kTitle = 80, kHeader = 84, kFacet = 50;
 constexpr NumberType kCount = {4, 'u'}, kCoordinate = {4, 'f'};
 
-/// Makes vertices of the corners of facets, numbered as they first appear. A corner is looked for in a table of hashes; where
-/// that is crowded, which only a file made for it can bring about, in an ordered map: no file can cause quadratic time.
+/// Makes vertices of the corners of facets, numbered as they first appear; `Number` is double, or float where the file has no
+/// more digits. A corner is looked for in a table of hashes; where that is crowded, which only a file made for it can bring
+/// about, in an ordered map: no file can cause quadratic time.
+template <class Number>
 class Welder {
  public:
-  using Corner = std::array<double, 3>;
-
   /// A closed surface has half as many vertices as facets.
-  void reserve(std::size_t facets) {
-    corners_.reserve(3 * facets);
+  explicit Welder(std::size_t facets = 0) {
     vertices_.reserve(facets / 2 + 1024);
-    while (slots_.size() < facets) slots_.resize(2 * slots_.size(), -1);
+    std::size_t slots = 1024;
+    while (slots < facets) slots *= 2;
+    slots_.assign(slots, -1);
   }
-  bool is_full() const { return corners_.size() + 3 > static_cast<std::size_t>(kMaximumCount); }
 
-  void add(Corner corner) {
-    for (double& coordinate : corner) coordinate += 0.0;  // -0 and +0 are one place: the sum is +0 for both
+  /// The vertex at a corner.
+  int add(std::array<Number, 3> corner) {
+    for (Number& coordinate : corner) coordinate += 0;  // -0 and +0 are one place: the sum is +0 for both
     if (2 * vertices_.size() >= slots_.size()) grow();
-    corners_.push_back(vertex_at(bits_of(corner)));
+    Bits bits;
+    std::memcpy(bits.data(), corner.data(), sizeof bits);
+    return vertex_at(bits);
   }
 
-  StoredMesh take() const {
-    StoredMesh mesh;
-    mesh.vertices.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
-    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        std::memcpy(&mesh.vertices(static_cast<Eigen::Index>(vertex), static_cast<Eigen::Index>(axis)),
-                    &vertices_[vertex][axis], sizeof(double));
-    mesh.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-        corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
-    return mesh;
+  Points vertices() const {
+    Points points(static_cast<Eigen::Index>(vertices_.size()), 3);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+        Number coordinate;
+        std::memcpy(&coordinate, &vertices_[vertex][axis], sizeof coordinate);
+        points(static_cast<Eigen::Index>(vertex), static_cast<Eigen::Index>(axis)) = coordinate;
+      }
+    return points;
   }
 
  private:
   /// Compared bit by bit, a coordinate that is nan equals itself.
-  using Bits = std::array<std::uint64_t, 3>;
-
-  static Bits bits_of(const Corner& corner) {
-    Bits bits;
-    std::memcpy(bits.data(), corner.data(), sizeof bits);
-    return bits;
-  }
+  using Word = std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>;
+  using Bits = std::array<Word, 3>;
 
   static std::uint64_t hash_of(const Bits& bits) {
     constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;  // 2^64 by the golden ratio
@@ -75,13 +73,16 @@ class Welder {
     return hash;
   }
 
+  /// Without a branch for each word, or a call.
+  static bool are_equal(const Bits& a, const Bits& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
+
   int vertex_at(const Bits& bits) {
     constexpr std::size_t kProbes = 64;
     const std::size_t mask = slots_.size() - 1, first = hash_of(bits) & mask;
     for (std::size_t slot = first; slot < first + kProbes; ++slot) {
       int& vertex = slots_[slot & mask];
       if (vertex < 0) return vertex = append(bits);
-      if (vertices_[static_cast<std::size_t>(vertex)] == bits) return vertex;
+      if (are_equal(vertices_[static_cast<std::size_t>(vertex)], bits)) return vertex;
     }
     const auto [place, is_new] = crowded_.try_emplace(bits, static_cast<int>(vertices_.size()));
     return is_new ? append(bits) : place->second;
@@ -102,9 +103,8 @@ class Welder {
   }
 
   std::vector<Bits> vertices_;
-  std::vector<int> slots_ = std::vector<int>(1024, -1);  // vertices by their hashes, a power of two many; -1 is free
+  std::vector<int> slots_;  // vertices by their hashes, a power of two many; -1 is free
   std::map<Bits, int> crowded_;
-  Indices corners_;
 };
 
 std::uint64_t binary_size(std::string_view content) {
@@ -129,8 +129,9 @@ StoredMesh parse_binary(const std::string& path, std::string_view content) {
                       " bytes with the header, but the file has " + std::to_string(content.size()));
   if (3 * facets > static_cast<std::uint64_t>(kMaximumCount))
     throw IoError(path, "byte " + std::to_string(kTitle), "more facets than can be counted");
-  Welder welder;
-  welder.reserve(static_cast<std::size_t>(facets));
+  Welder<float> welder(static_cast<std::size_t>(facets));
+  StoredMesh mesh;
+  mesh.triangles.resize(static_cast<Eigen::Index>(facets), 3);
   for (std::size_t facet = 0; facet < facets; ++facet) {
     const std::size_t start = kHeader + kFacet * facet + 12;  // behind the normal, which the corners give anyway
     std::array<double, 9> places;
@@ -140,9 +141,12 @@ StoredMesh parse_binary(const std::string& path, std::string_view content) {
         throw IoError(path, "byte " + std::to_string(start + 4 * i),
                       "found " + to_text(places[i]) + " in facet " + std::to_string(facet) + " of " +
                           std::to_string(facets) + ", expected a finite coordinate");
-    for (std::size_t i = 0; i < places.size(); i += 3) welder.add({places[i], places[i + 1], places[i + 2]});
+    const auto place = [&](std::size_t i) { return static_cast<float>(places[i]); };
+    for (std::size_t i = 0; i < 3; ++i)
+      mesh.triangles(static_cast<Eigen::Index>(facet), static_cast<Eigen::Index>(i)) =
+          welder.add({place(3 * i), place(3 * i + 1), place(3 * i + 2)});
   }
-  StoredMesh mesh = welder.take();
+  mesh.vertices = welder.vertices();
   if (content.size() > binary_size(content))
     mesh.notes.push_back(unread_note(content.size() - binary_size(content), "facet"));
   return mesh;
@@ -172,7 +176,10 @@ class TextReader {
       }
       lacks_end = reader_.lacks_end();
     } while (reader_.next());
-    StoredMesh mesh = welder_.take();
+    StoredMesh mesh;
+    mesh.vertices = welder_.vertices();
+    mesh.triangles = Eigen::Map<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        corners_.data(), static_cast<Eigen::Index>(corners_.size() / 3), 3);
     if (lacks_end) mesh.notes.push_back(kOpenEndNote);
     return mesh;
   }
@@ -181,13 +188,14 @@ class TextReader {
   void read_facet() {
     // The normal is ignored: some writers put no numbers there for a facet without area.
     if (!is_line({"facet", "normal"}, 3)) refuse("'facet normal NX NY NZ' or endsolid");
-    if (welder_.is_full()) reader_.fail("more facets than can be counted");
+    if (corners_.size() + 3 > static_cast<std::size_t>(kMaximumCount)) reader_.fail("more facets than can be counted");
     need_line({"outer", "loop"});
     for (int corner = 0; corner < 3; ++corner) {
       reader_.need("'vertex X Y Z'");
       if (!is_line({"vertex"}, 3)) refuse("'vertex X Y Z'");
       const auto& fields = reader_.fields();
-      welder_.add({reader_.coordinate(fields[1]), reader_.coordinate(fields[2]), reader_.coordinate(fields[3])});
+      corners_.push_back(
+          welder_.add({reader_.coordinate(fields[1]), reader_.coordinate(fields[2]), reader_.coordinate(fields[3])}));
     }
     need_line({"endloop"});
     need_line({"endfacet"});
@@ -213,7 +221,8 @@ class TextReader {
   }
 
   LineReader reader_;
-  Welder welder_;
+  Welder<double> welder_;
+  Indices corners_;
 };
 
 }  // namespace

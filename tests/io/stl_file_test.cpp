@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "io/mesh_file.h"
+#include "kernel/random.h"
 #include "kernel/surface/mesh/topology.h"
 #include "tests/io/ply_encoder.h"
 #include "tests/io/scratch.h"
@@ -210,6 +212,40 @@ TEST(StlFile, ManyCornersAreWeldedAsFewOnes) {
   EXPECT_EQ(read.vertices.rows(), 10000);
   EXPECT_EQ(inspect_topology(read).boundary_edges, 4 * 99);
   EXPECT_EQ(inspect_topology(read).duplicate_vertices, 0);
+}
+
+/// Single precision, with all that is awkward to compare: both zeros, the smallest numbers, neighbours.
+Facet awkward_facet(RandomStream& random) {
+  constexpr std::array<float, 8> kCoordinates = {0.0F, -0.0F, 1e-45F, -1e-45F, 1.0F, 1.0000001F, -3e38F, 0.1F};
+  Facet facet;
+  for (double& coordinate : facet) coordinate = static_cast<double>(kCoordinates[random.below(kCoordinates.size())]);
+  return facet;
+}
+
+TEST(StlFile, CornersAreNumberedAsTheyFirstAppear) {
+  RandomStream random(3);
+  for (const int facets : {1, 40, 3000}) {
+    std::vector<Facet> file;
+    std::map<std::array<double, 3>, int> numbers;  // finds either zero at the place of the other
+    std::vector<int> expected;
+    for (int i = 0; i < facets; ++i) {
+      const Facet& facet = file.emplace_back(awkward_facet(random));
+      for (std::size_t corner = 0; corner < 9; corner += 3)
+        expected.push_back(
+            numbers.try_emplace({facet[corner], facet[corner + 1], facet[corner + 2]}, static_cast<int>(numbers.size()))
+                .first->second);
+    }
+    for (const std::string& content : {text_stl(file), binary_stl(file)}) {
+      const Mesh mesh = parse_stl(kPath, content);
+      EXPECT_EQ(mesh.vertices.rows(), static_cast<Eigen::Index>(numbers.size()));
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        ASSERT_EQ(mesh.triangles(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)), expected[i]);
+      for (const auto& [place, number] : numbers)
+        EXPECT_TRUE(mesh.vertices.row(number) == Eigen::RowVector3d(place[0], place[1], place[2])) << number;
+      for (const double coordinate : mesh.vertices.reshaped())
+        EXPECT_FALSE(coordinate == 0 && std::signbit(coordinate)) << "-0 is stored";
+    }
+  }
 }
 
 TEST(StlFile, NamesTheFacetOfACoordinateThatIsNotFinite) {
