@@ -126,7 +126,7 @@ class StagedFile {
 std::string read_file(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw IoError(path, "", "does not exist");
+  if (status.type() == fs::file_type::not_found) throw SystemError(path, "", "does not exist");
   if (fs::is_directory(status)) throw IoError(path, "", "is a directory, expected a file");
   if (!error && !fs::is_regular_file(status) && !fs::is_fifo(status))
     throw IoError(path, "", "is a device, expected a file");

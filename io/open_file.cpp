@@ -13,7 +13,7 @@
 namespace corral {
 
 void fail_by_errno(const std::string& path, const std::string& action) {
-  throw IoError(path, "", "cannot " + action + " (" + std::strerror(errno) + ")");
+  throw SystemError(path, "", "cannot " + action + " (" + std::strerror(errno) + ")");
 }
 
 OpenFile::OpenFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {

@@ -3,10 +3,17 @@
 
 #include <string>
 
+#include "kernel/error.h"
+
 // What the writers of this room share. An IoError names the file and the reason that the system gives.
 namespace corral {
 
-/// Throws IoError "PATH: cannot ACTION (REASON)" with the reason in errno.
+/// The system refused what was asked of a file: at another time it may not.
+struct SystemError : IoError {
+  using IoError::IoError;
+};
+
+/// Throws SystemError "PATH: cannot ACTION (REASON)" with the reason in errno.
 [[noreturn]] void fail_by_errno(const std::string& path, const std::string& action);
 
 /// A descriptor of the system with the name of its file, closed at the end of its life.

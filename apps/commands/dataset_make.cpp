@@ -3,6 +3,7 @@
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/dataset/make_b3r.h"
+#include "apps/dataset/make_challenge.h"
 #include "apps/dataset/make_default.h"
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
@@ -154,14 +155,65 @@ void add_default(CLI::App& make, Action& action) {
   });
 }
 
+void add_challenge(CLI::App& make, Action& action) {
+  struct Settings {
+    MakeChallengeOptions options;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("challenge", "Tables of any size and share of correct matches, out of real ones");
+  auto settings = std::make_shared<Settings>();
+  MakeChallengeOptions& options = settings->options;
+  command->add_option("--tables", options.tables, "A data set whose pairs have tables of matches and truths")
+      ->type_name("FOLDER")
+      ->required();
+  add_output(*command, options.output);
+  command->add_option("--sizes", options.sizes, "Matches in a table: numbers between commas")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  command->add_option("--ratios", options.inlier_ratios, "Correct ones among them, in percent")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--noise-pr", options.noises_pr, "Deviation of normal noise on the target points")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--repeats", options.repeats, "Tables of each kind out of each real one")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--threshold-pr", options.threshold_pr, "Residual up to which a match is correct")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  add_seed(*command, options.seed);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Real rows are kept or dropped. Where more incorrect ones are needed, the source side of one is paired with the\n"
+      "target side of another; where more correct ones are, matches beside real ones are made, with their residuals.\n"
+      "An interrupted command continues when it is repeated. The experiments inlier-ratio and size use such a set.\n"
+      "Example:\n  corral dataset make challenge --tables data/field --sizes 1000,10000 --ratios 1,5,20 -o "
+      "data/challenge");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      const MakeChallengeOptions& chosen = settings->options;
+      keep_inputs({chosen.tables}, {chosen.output});
+      settings->options.parallel = workers(settings->threads);
+      Progress progress(count_challenge(chosen));
+      make_challenge(chosen, progress);
+      return kOk;
+    };
+  });
+}
+
 }  // namespace
 
 void add_dataset_make(CLI::App& dataset, Action& action) {
-  auto* make = dataset.add_subcommand("make", "A new set from meshes, with exact truth");
+  auto* make = dataset.add_subcommand("make", "A new set from meshes or tables, with exact truth");
   make->require_subcommand(1);
   add_b3r(*make, action);
   add_u3or(*make, action);
   add_u3m(*make, action);
+  add_challenge(*make, action);
   add_default(*make, action);
 }
 

@@ -15,6 +15,7 @@
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
 #include "io/matches_file.h"
+#include "io/open_file.h"
 #include "io/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -274,6 +275,7 @@ UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) 
     throw;  // not a failure of the pair
   } catch (const std::exception& error) {
     UnitResult failed;
+    failed.is_unreadable = dynamic_cast<const SystemError*>(&error) != nullptr;
     failed.failure = *error.what() ? one_line(error.what()) : "no reason given";
     return failed;
   }

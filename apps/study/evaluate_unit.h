@@ -26,6 +26,7 @@ struct TaskResult {
 /// The result of a unit.
 struct UnitResult {
   std::string failure;  ///< why the pair could not be matched; then nothing else is filled
+  bool is_unreadable = false;  ///< the failure: a file was refused by the system, which may not last. Not kept
   double resolution = 0;
   int source_points = 0, source_keypoints = 0;  ///< vertices of the source, and those that were keypoints
   int matches = 0;

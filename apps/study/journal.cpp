@@ -87,9 +87,11 @@ void JournalWriter::append(const JournalEntry& entry) {
     const std::string units = (fs::path(folder_) / "units").string();
     make_folder(units);
     const std::vector<JournalFile> earlier = find_journals(folder_, header_.shard);
-    for (int call = earlier.empty() ? 1 : earlier.back().call + 1; !file_; ++call)
-      file_ = AppendFile::create(units + "/" + file_name(header_.shard) + "." + std::to_string(call) + ".journal");
-    file_->append(line_of(to_json(header_)));
+    std::optional<AppendFile> file;
+    for (int call = earlier.empty() ? 1 : earlier.back().call + 1; !file; ++call)
+      file = AppendFile::create(units + "/" + file_name(header_.shard) + "." + std::to_string(call) + ".journal");
+    file->append(line_of(to_json(header_)));
+    file_ = std::move(file);  // only with its header
   }
   file_->append(text_of(entry));
 }

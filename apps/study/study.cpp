@@ -22,6 +22,7 @@
 #include "apps/study/manifest.h"
 #include "apps/study/plan.h"
 #include "io/file.h"
+#include "io/open_file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -86,7 +87,8 @@ class Runner {
     JournalEntry entry;
     entry.result = evaluate_unit({unit, inputs_, store_}, files);
     entry.unit = unit_key(unit);
-    for (const std::string& file : unit.pair.files()) entry.inputs.push_back(hash_of(inputs_, file));
+    for (const std::string& file : unit.pair.files())  // without them it is done again when they can be read
+      entry.inputs.push_back(entry.result.is_unreadable ? "" : hash_of(inputs_, file));
     entry.seconds = watch.lap_ms() / 1000;
     for (FileContent& file : files) {
       file.path = (folder_ / file.path).string();
@@ -121,7 +123,7 @@ class Runner {
 FolderLock::FolderLock(const std::string& folder, const Shard& shard) {
   const std::string path = folder + (shard.is_whole() ? "/lock" : "/lock-" + file_name(shard));
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw IoError(path, "", "cannot be created");
+  if (descriptor_ < 0) fail_by_errno(path, "be created");
   // A call that was killed a moment ago may not have ended yet.
   for (int attempt = 0; attempt < 40; ++attempt, std::this_thread::sleep_for(std::chrono::milliseconds(50)))
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // or there are no locks here
