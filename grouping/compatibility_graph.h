@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grouping/filter.h"
 #include "grouping/principal_eigenvector.h"
 #include "kernel/correspondence_set.h"
 
@@ -15,14 +16,20 @@ namespace corral {
 ///
 /// Eight columns share a byte. A product looks up each byte in tables of partial sums (the method of four Russians). Sums are
 /// whole numbers and therefore exact: each number is a multiple of a power of two, small enough that no sum reaches 2^31.
+///
+/// No more bytes than a limit are stored; the columns beyond are computed whenever they are needed. As sums are exact, every
+/// result is the same to the last bit whatever the limit.
 class CompatibilityGraph : public GraphMatrix {
  public:
-  CompatibilityGraph(const CorrespondenceSet& matches, double similarity);
+  static constexpr double kMostStored = 0x1p30;
+
+  /// `matches` must outlive the graph and what is restricted from it.
+  CompatibilityGraph(const CorrespondenceSet& matches, double similarity, double most_stored = kMostStored);
 
   /// Bytes for so many rows.
-  static double memory(int rows);
+  static double memory(int rows, double most_stored = kMostStored);
 
-  int size() const override { return size_; }
+  int size() const override { return table_.rows(); }
   void multiply(const Eigen::VectorXd& from, Eigen::VectorXd& to) const override;
   void round_and_multiply(Eigen::VectorXd& numbers, Eigen::VectorXd& to) const override;
   Eigen::VectorXd degrees() const override;
@@ -31,13 +38,21 @@ class CompatibilityGraph : public GraphMatrix {
   std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const override;
 
  private:
-  explicit CompatibilityGraph(int size);
-  std::uint8_t* bytes(int block) { return &bytes_[static_cast<std::size_t>(block) * stride_]; }
-  const std::uint8_t* bytes(int block) const { return &bytes_[static_cast<std::size_t>(block) * stride_]; }
+  CompatibilityGraph(const CompatibilityGraph& whole, const Indices& nodes);
+  void store();
+  void compute(int block, std::uint8_t* to) const;
+  void decide(int row, int block, std::uint8_t undecided, std::uint8_t& certain) const;
+  std::uint8_t* stored(int block) const { return &bytes_[static_cast<std::size_t>(block) * stride()]; }
+  std::size_t stride() const { return static_cast<std::size_t>(table_.padded_rows()); }
 
-  int size_;
-  std::size_t stride_;               ///< rows, padded
-  std::vector<std::uint8_t> bytes_;  ///< block of eight columns by block, one byte a row: column 8 block + k in bit k
+  const CorrespondenceSet& matches_;
+  double similarity_, most_stored_;
+  Indices rows_;  ///< of the table of matches, by node
+  FilterTable table_;
+  int blocks_stored_ = 0;                    ///< a multiple of kBlocksTogether
+  mutable std::vector<std::uint8_t> bytes_;  ///< block of eight columns by block, one byte a row: column 8 block + k in
+                                             ///< bit k; then those that were computed last, and what is possible in one
+  mutable int computed_ = -1;                ///< the block computed last by get_column
 };
 
 }  // namespace corral

@@ -57,23 +57,4 @@ class DenseGraph : public GraphMatrix {
 /// or until rounding prevents a further decrease. A matrix without a positive entry: zero.
 Eigen::VectorXd principal_eigenvector(const GraphMatrix& matrix);
 
-/// Some nodes of a graph, whose edges weigh at most 1.
-struct Subgraph {
-  const GraphMatrix& matrix;
-  const Eigen::VectorXd& takes_part;  ///< 1 for nodes of the subgraph, 0 for the others
-  const Eigen::VectorXd& degrees;     ///< number of positive entries of each node within the subgraph
-  double sum_of_squares;              ///< of the entries within the subgraph
-};
-
-/// The node of the largest entry in the principal eigenvector of a subgraph, the first of those that are within `tie` of
-/// it; or kUncertain where a few rounded products do not prove which one that is. `entries` is an approximation of the
-/// eigenvector to start from, zero outside the subgraph; on return a better one.
-///
-/// The proof needs no convergence. The squares of all eigenvalues add up to the squares of all entries, which bounds all but
-/// the largest; so the residual of a vector y bounds its angle to the eigenvector x. With M y = cos l x + sin M u, u a
-/// unit vector, entries i and j of M y are in the order of those of x if they differ by more than sin |row_i - row_j|. Nodes
-/// with equal rows have equal entries.
-int leading_entry(const Subgraph& graph, double tie, Eigen::VectorXd& entries);
-constexpr int kUncertain = -1;
-
 }  // namespace corral

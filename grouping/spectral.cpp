@@ -8,6 +8,7 @@
 #include "grouping/compatibility.h"
 #include "grouping/compatibility_graph.h"
 #include "grouping/filter.h"
+#include "grouping/leading_entry.h"
 
 namespace corral {
 namespace {
@@ -37,8 +38,8 @@ class Alive {
         is_binary_(is_binary),
         rows_(static_cast<std::size_t>(graph_->size())),
         takes_part_(Eigen::VectorXd::Ones(graph_->size())),
-        entries_(takes_part_),
         degrees_(graph_->degrees()),
+        leading_(degrees_),
         sum_of_squares_(graph_->sum_of_squares()),
         count_(graph_->size()) {
     std::iota(rows_.begin(), rows_.end(), 0);
@@ -64,10 +65,11 @@ class Alive {
   int choose() {
     const int obvious = compatible_with_all();
     if (obvious != kNobody || count_ == 0) return obvious;
-    const int leader = leading_entry({*graph_, takes_part_, degrees_, sum_of_squares_}, kTie, entries_);
-    if (leader != kUncertain) return leader;
+    const int leader = leading_.find({*graph_, takes_part_, degrees_, sum_of_squares_, count_, is_binary_}, kTie);
+    if (leader != LeadingEntry::kUncertain) return leader;
     renumber();
     start();
+    leading_.restart(entries_);
     return largest();
   }
 
@@ -111,7 +113,9 @@ class Alive {
       degrees_ -= column_;
     else
       degrees_ -= (column_.array() > 0).cast<double>().matrix();
-    takes_part_(node) = entries_(node) = 0;
+    leading_.remove(node, column_);
+    takes_part_(node) = 0;
+    if (entries_.size() > 0) entries_(node) = 0;
     --count_;
   }
 
@@ -122,7 +126,8 @@ class Alive {
     graph_ = graph_->restricted(nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i) rows_[i] = rows_[static_cast<std::size_t>(nodes[i])];
     rows_.resize(nodes.size());
-    entries_ = Eigen::VectorXd(entries_(nodes));
+    leading_.renumber(nodes);
+    if (entries_.size() > 0) entries_ = Eigen::VectorXd(entries_(nodes));
     degrees_ = Eigen::VectorXd(degrees_(nodes));
     takes_part_ = Eigen::VectorXd::Ones(graph_->size());
     sum_of_squares_ = graph_->sum_of_squares();  // without the rounding of the subtractions since
@@ -132,8 +137,9 @@ class Alive {
   bool is_binary_;              ///< no entries but 0 and 1
   Indices rows_;                ///< of the table, by node
   Eigen::VectorXd takes_part_;  ///< 1 or 0, by node
-  Eigen::VectorXd entries_;     ///< of the last eigenvector or near it, by node; 0 for those that left since
+  Eigen::VectorXd entries_;     ///< of the last eigenvector that was computed, by node; 0 for those that left since
   Eigen::VectorXd degrees_;     ///< number of compatible remaining matches, with itself, by node
+  LeadingEntry leading_;        ///< in the eigenvector of the remaining matches
   double sum_of_squares_;       ///< of the matrix of the remaining matches
   int count_;                   ///< of the remaining matches
   Eigen::VectorXd column_;
@@ -163,7 +169,7 @@ double working_memory(int matches, const SpectralOptions& options) {
   // The graph, and a copy while it is renumbered or a part of it is solved; then columns of doubles, most of them the
   // basis of the eigenvector.
   const double n = matches, graph = options.weighted ? 8 * n * n : CompatibilityGraph::memory(matches);
-  return 2 * graph + FilterTable::memory(matches) + 500 * n + 65536;
+  return 2 * graph + 600 * n + 65536;
 }
 
 }  // namespace corral

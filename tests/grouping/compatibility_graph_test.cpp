@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "grouping/compatibility.h"
 #include "kernel/random.h"
@@ -69,6 +70,46 @@ TEST(CompatibilityGraph, RestrictedToSomeNodes) {
     some->get_column(node, column);
     EXPECT_EQ(column, expected.col(node)) << node;
   }
+}
+
+// Half of the columns stored, and none: everything that ST asks of a graph, to the last bit.
+TEST(CompatibilityGraph, WhatIsStoredDoesNotMatter) {
+  for (const std::int64_t each : testing::available_targets())
+    for (const int rows : {1, 40, 333, 1000}) {
+      const testing::ForcedTarget forced(each);
+      const CorrespondenceSet matches = testing::harsh_table(rows, 0.3, 2);
+      const CompatibilityGraph stored(matches, kSimilarity);
+      Indices nodes;
+      for (int node = 0; node < rows; node += node % 3 + 1) nodes.push_back(node);
+      for (const double most_stored : {0.0, rows * (rows / 16.0)}) {
+        const CompatibilityGraph computed(matches, kSimilarity, most_stored);
+        EXPECT_EQ(computed.degrees(), stored.degrees());
+        const std::pair<const GraphMatrix*, const GraphMatrix*> whole{&computed, &stored};
+        const auto some = computed.restricted(nodes), expected_some = stored.restricted(nodes);
+        for (const auto& [graph, expected] : {whole, {some.get(), expected_some.get()}}) {
+          const Eigen::VectorXd numbers = random_numbers(graph->size(), 1);
+          Eigen::VectorXd product, expected_product, rounded = numbers, expected_rounded = numbers;
+          graph->multiply(numbers, product);
+          expected->multiply(numbers, expected_product);
+          EXPECT_EQ(product, expected_product) << rows << " " << most_stored;
+          graph->round_and_multiply(rounded, product);
+          expected->round_and_multiply(expected_rounded, expected_product);
+          EXPECT_EQ(rounded, expected_rounded) << rows << " " << most_stored;
+          EXPECT_EQ(product, expected_product) << rows << " " << most_stored;
+          for (int node = graph->size() - 1; node >= 0; node -= 1 + node % 5) {
+            graph->get_column(node, product);
+            expected->get_column(node, expected_product);
+            ASSERT_EQ(product, expected_product) << rows << " " << most_stored << " " << node;
+          }
+        }
+      }
+    }
+}
+
+TEST(CompatibilityGraph, StoresNoMoreThanItMay) {
+  EXPECT_LT(CompatibilityGraph::memory(1000000), CompatibilityGraph::kMostStored + 100e6);
+  EXPECT_GT(CompatibilityGraph::memory(1000000), CompatibilityGraph::kMostStored);
+  EXPECT_LT(CompatibilityGraph::memory(1000, 0), 50e3);
 }
 
 }  // namespace
