@@ -4,6 +4,7 @@
 #include "apps/commands/command_options.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/runtime/output.h"
+#include "apps/runtime/progress.h"
 #include "io/file.h"
 #include "io/group_file.h"
 #include "io/matches_file.h"
@@ -19,6 +20,14 @@ struct Settings {
   std::uint64_t memory_limit = 0;
   bool json = false;
 };
+
+/// A terminal says what is being done meanwhile.
+TimedGrouping time_on_terminal(const ConfiguredGrouper& grouper, const CorrespondenceSet& matches,
+                               const Settings& settings) {
+  Progress progress(1);
+  progress.begin(settings.method + " on " + std::to_string(matches.size()) + " matches");
+  return time_grouping(grouper.group, matches, settings.repeat);
+}
 
 int group(const Settings& settings) {
   const OptionsByName options = parse_set(settings.set);
@@ -38,7 +47,7 @@ int group(const Settings& settings) {
                  {"repeat", settings.repeat},
                  {"status", refusal.empty() ? "grouped" : to_text(MethodStatus{MethodState::TooLarge, refusal})}};
   if (refusal.empty()) {
-    const TimedGrouping timed = time_grouping(grouper.group, matches, settings.repeat);
+    const TimedGrouping timed = time_on_terminal(grouper, matches, settings);
     report["selected"] = timed.found.selected.size();
     report["time_ms"] = timed.time_ms;
     if (!settings.json || !settings.output.empty())
