@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "io/csv_file.h"
 #include "io/line_reader.h"
@@ -46,6 +47,15 @@ bool is_name(const std::string& name) {
   return !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), fits);
 }
 
+constexpr char kBetweenTruths = ';';
+
+void split_truths(const std::string& cell, DatasetPair& pair) {
+  std::istringstream stream(cell);
+  std::getline(stream, pair.truth, kBetweenTruths);
+  for (std::string truth; std::getline(stream, truth, kBetweenTruths);)
+    if (!truth.empty()) pair.equal_truths.push_back(truth);
+}
+
 void read_pairs(const std::string& path, Dataset& dataset) {
   const CsvTable table = read_csv(path);
   int columns[4];
@@ -63,6 +73,7 @@ void read_pairs(const std::string& path, Dataset& dataset) {
     const auto cell = [&](int i) { return cells[static_cast<std::size_t>(columns[i])]; };
     const std::string place = "pair " + std::to_string(row + 1);
     DatasetPair pair{cell(0), cell(1), cell(2), cell(3), {}};
+    split_truths(cell(3), pair);
     if (matches >= 0) pair.matches = cells[static_cast<std::size_t>(matches)];
     if (!is_name(pair.name))
       throw IoError(path, place,
@@ -80,6 +91,19 @@ void read_pairs(const std::string& path, Dataset& dataset) {
 }
 
 }  // namespace
+
+std::vector<std::string> DatasetPair::files() const {
+  std::vector<std::string> all = {source, target, truth, matches};
+  all.insert(all.end(), equal_truths.begin(), equal_truths.end());
+  return all;
+}
+
+DatasetPair Dataset::with_paths(DatasetPair pair) const {
+  for (std::string* file : {&pair.source, &pair.target, &pair.truth, &pair.matches})
+    if (!file->empty()) *file = path(*file);
+  for (std::string& truth : pair.equal_truths) truth = path(truth);
+  return pair;
+}
 
 std::string Dataset::path(const std::string& file) const {
   return (std::filesystem::path(folder) / file).lexically_normal().string();
@@ -132,7 +156,9 @@ std::string pairs_csv_text(const Dataset& dataset) {
   if (has_matches) table.header.push_back(kMatches);
   table.header.insert(table.header.end(), dataset.attributes.begin(), dataset.attributes.end());
   for (const DatasetPair& pair : dataset.pairs) {
-    table.rows.push_back({pair.name, pair.source, pair.target, pair.truth});
+    std::string truths = pair.truth;
+    for (const std::string& truth : pair.equal_truths) truths += kBetweenTruths + truth;
+    table.rows.push_back({pair.name, pair.source, pair.target, truths});
     if (has_matches) table.rows.back().push_back(pair.matches);
     table.rows.back().insert(table.rows.back().end(), pair.attributes.begin(), pair.attributes.end());
   }

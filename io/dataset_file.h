@@ -15,10 +15,12 @@ struct DatasetPair {
   std::string truth;                    ///< transform file, target_from_source; empty if it is not known
   std::vector<std::string> attributes;  ///< one cell for each of Dataset::attributes; empty where unknown
   std::string matches = {};             ///< table of matches; empty if the surfaces are to be matched
+  std::vector<std::string> equal_truths =
+      {};  ///< further transform files, each as right as `truth`: of a symmetric object
 
   bool has_surfaces() const { return !source.empty(); }
-  /// source, target, truth, matches: empty where it names none.
-  std::vector<std::string> files() const { return {source, target, truth, matches}; }
+  /// source, target, truth, matches (each empty where it names none), then the equal truths.
+  std::vector<std::string> files() const;
 };
 
 /// A data set: a folder with dataset.toml and pairs.csv, and the files that they name.
@@ -34,6 +36,7 @@ struct Dataset {
   std::vector<DatasetPair> pairs;
 
   std::string path(const std::string& file) const;  ///< of a file of the set, from the working directory
+  DatasetPair with_paths(DatasetPair pair) const;   ///< its files so
 };
 
 /// The file that a command that makes a set writes first, so that an unfinished set can be told from none.
@@ -42,7 +45,8 @@ constexpr char kRecipeName[] = "recipe.txt";
 /// Reads the manifest, but none of the files that it names.
 ///
 ///   dataset.toml   name (required), kind, units, resolution, provenance, licence, citation (a list)
-///   pairs.csv      pair,source,target,truth, then matches (optional) and any attributes
+///   pairs.csv      pair,source,target,truth, then matches (optional) and any attributes; several truths that are equally right
+///                  stand in the one cell, between semicolons
 ///
 /// Throws IoError naming file and place: an unknown or doubled key, a wrong kind, no pairs, a doubled or empty pair name,
 /// one side without the other, neither surfaces nor matches, an unfinished set.

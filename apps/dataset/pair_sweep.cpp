@@ -43,12 +43,16 @@ SweptSurface load(const std::string& path) {
 SweptPair complete(const Dataset& dataset, const DatasetPair& pair, const SweptSurface& source,
                    const SweptSurface& target) {
   SweptPair swept{pair, source, target, std::nullopt, "", {}};
-  const std::string path = dataset.path(pair.truth);
+  std::string path = dataset.path(pair.truth);
   try {
     if (pair.truth.empty()) return swept;
     StoredTransform truth = read_transform(path);
     swept.truth_notes = std::move(truth.notes);
     swept.truth = truth;
+    for (const std::string& equal : pair.equal_truths) {
+      path = dataset.path(equal);
+      read_transform(path);
+    }
   } catch (const IoError& error) {
     swept.truth_problem = without_path(error.what(), split_transform_name(path).file);
   }

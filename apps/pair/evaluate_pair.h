@@ -18,12 +18,23 @@ namespace corral {
 /// The ground truth of a pair.
 struct PairTruth {
   RigidTransform target_from_source;
-  Points overlap;           ///< source points over which a pose is judged; may be empty
-  double threshold_pr = 4;  ///< largest residual of a correct match
-  Points vertices{};        ///< all source vertices; empty where the mesh is not available
-  double diameter = 0;      ///< of these, mesh units
-  Points rmse_points{};     ///< over which the RMSE is taken, if not over the overlap
+  Points overlap;                        ///< source points over which a pose is judged; may be empty
+  double threshold_pr = 4;               ///< largest residual of a correct match
+  Points vertices{};                     ///< all source vertices; empty where the mesh is not available
+  double diameter = 0;                   ///< of these, mesh units
+  Points rmse_points{};                  ///< over which the RMSE is taken, if not over the overlap
+  std::vector<RigidTransform> equals{};  ///< further poses that are as right as the first
+
+  /// The first, then its equals.
+  std::vector<RigidTransform> poses() const;
 };
+
+/// Which matches each of these poses makes correct.
+std::vector<std::vector<bool>> labels_of(const CorrespondenceSet& matches, const std::vector<RigidTransform>& poses,
+                                         double threshold_pr);
+
+/// The place of the pose under which most of the selected rows are correct, the first of several.
+std::size_t best_truth(const std::vector<std::vector<bool>>& labels, const Indices& selected);
 /// The same with the overlap of the two surfaces and the extent of the source. `resolution`: mesh units per pr.
 PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
                      double resolution, double threshold_pr);
@@ -41,6 +52,7 @@ struct PoseErrors {
   std::optional<PointError> points;  ///< over the overlap
   std::optional<double> add_share;   ///< mean distance of all source vertices, in diameters of the source (ADD)
 };
+/// Against the nearest of the poses that are right: that with the least mean error, or without points the least rotation error.
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
 
 constexpr double kSuccessPr = 5;          ///< most mean error over the overlap of a pose that registers a pair

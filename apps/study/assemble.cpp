@@ -43,7 +43,8 @@ StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t thres
   record.dense = task.dense;
   record.time_ms = task.time_ms;
   if (task.correct.empty() || !task.selected) return record;
-  const int correct = task.correct[threshold], right = *record.true_matches;
+  const int correct = task.correct[threshold];
+  const int right = task.true_matches.empty() ? *record.true_matches : task.true_matches[threshold];
   record.correct = correct;
   if (*task.selected > 0) record.precision = static_cast<double>(correct) / *task.selected;
   if (right == 0) return record;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <new>
+#include <numeric>
 
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/evaluate_pair.h"
@@ -99,8 +100,9 @@ class PairStudy {
     else if (target_from_source)
       look_at_table(*target_from_source);
     if (!truth_) return;
+    for (const std::string& truth : unit_.pair.equal_truths) truth_->equals.push_back(read_transform(truth));
     for (const double threshold : unit_.thresholds_pr)
-      labels_.push_back(label_correct(matches_, truth_->target_from_source, threshold));
+      labels_.push_back(labels_of(matches_, truth_->poses(), threshold));
     if (surfaces_ && unit_.pair.matches.empty()) warn_of_sides();
   }
 
@@ -130,9 +132,10 @@ class PairStudy {
       result.baseline = result.oracles.back();
       result.oracles.pop_back();
     }
-    for (const std::vector<bool>& labels : labels_) {
-      result.true_matches.push_back(static_cast<int>(std::count(labels.begin(), labels.end(), true)));
-      result.frame_share.push_back(frame_repeatability(matches_, truth_->target_from_source, labels).share());
+    for (const auto& labels : labels_) {
+      const std::size_t best = best_truth(labels, all_rows());
+      result.true_matches.push_back(count_of(labels[best]));
+      result.frame_share.push_back(frame_repeatability(matches_, truth_->poses()[best], labels[best]).share());
     }
     return result;
   }
@@ -213,12 +216,25 @@ class PairStudy {
     result.time_ms = record.time_ms;
     if (!record.failure.empty()) return result;
     result.selected = static_cast<int>(record.found.selected.size());
-    for (const std::vector<bool>& labels : labels_)
-      result.correct.push_back(score_grouping(labels, record.found.selected).correct);
+    for (const auto& labels : labels_) {
+      const std::vector<bool>& counted = labels[best_truth(labels, record.found.selected)];
+      result.correct.push_back(score_grouping(counted, record.found.selected).correct);
+      if (labels.size() > 1) result.true_matches.push_back(count_of(counted));
+    }
     result.initial = pose_scores(record.initial_errors);
     result.refined = pose_scores(record.errors);
     result.dense = pose_scores(record.dense_errors);
     return result;
+  }
+
+  static int count_of(const std::vector<bool>& labels) {
+    return static_cast<int>(std::count(labels.begin(), labels.end(), true));
+  }
+
+  Indices all_rows() const {
+    Indices rows(static_cast<std::size_t>(matches_.size()));
+    std::iota(rows.begin(), rows.end(), 0);
+    return rows;
   }
 
   std::vector<double> residuals() const {
@@ -238,8 +254,8 @@ class PairStudy {
   std::optional<TruthFit> fit_;             ///< of the surfaces
   std::optional<TableTruthFit> table_fit_;  ///< where there are none
   std::vector<std::string> warnings_;
-  std::vector<std::vector<bool>> labels_;  ///< at each threshold
-  std::vector<MethodRecord> records_;      ///< one for each task
+  std::vector<std::vector<std::vector<bool>>> labels_;  ///< at each threshold, under each truth
+  std::vector<MethodRecord> records_;                   ///< one for each task
 };
 
 }  // namespace

@@ -19,13 +19,15 @@ struct TaskResult {
   MethodStatus status;
   std::optional<int> selected;  ///< absent if there is no answer
   std::vector<int> correct;     ///< at each threshold; empty without a truth
+  std::vector<int>
+      true_matches;  ///< at each threshold, under the truth by which `correct` counts; empty: those of the unit
   PoseScores initial, refined, dense;
   std::optional<double> time_ms;
 };
 
 /// The result of a unit.
 struct UnitResult {
-  std::string failure;  ///< why the pair could not be matched; then nothing else is filled
+  std::string failure;         ///< why the pair could not be matched; then nothing else is filled
   bool is_unreadable = false;  ///< the failure: a file was refused by the system, which may not last. Not kept
   double resolution = 0;
   int source_points = 0, source_keypoints = 0;  ///< vertices of the source, and those that were keypoints

@@ -24,8 +24,10 @@ bool fits(const UnitResult& result, const WorkUnit& unit) {
   const std::size_t thresholds = result.has_truth ? unit.thresholds_pr.size() : 0;
   const auto is_whole = [&](const TaskResult& task) {
     if (task.correct.size() != (task.selected ? thresholds : 0)) return false;
+    if (!task.true_matches.empty() && task.true_matches.size() != task.correct.size()) return false;
+    const std::vector<int>& right = task.true_matches.empty() ? result.true_matches : task.true_matches;
     for (std::size_t i = 0; i < task.correct.size(); ++i)
-      if (task.correct[i] > std::min(*task.selected, result.true_matches[i])) return false;
+      if (task.correct[i] > std::min(*task.selected, right[i])) return false;
     return true;
   };
   return result.tasks.size() == unit.tasks.size() && result.true_matches.size() == thresholds &&
@@ -52,7 +54,7 @@ void FinishedUnits::add(JournalReader& reader, const JournalFile& journal) {
   while (auto entry = reader.next()) {
     const auto found = unit_of_key_.find(entry->unit);
     if (found == unit_of_key_.end() || !fits(entry->result, list_.units[found->second])) continue;
-    if (entry->inputs.size() != DatasetPair().files().size()) continue;
+    if (entry->inputs.size() != list_.units[found->second].pair.files().size()) continue;
     if (entry->result.failure.empty() && !has_selections(found->second)) continue;
     add(found->second, std::move(*entry), journal);
   }

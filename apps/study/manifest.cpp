@@ -82,6 +82,7 @@ Json inputs_json(const WorkList& list, const InputHashes& inputs) {
     const auto hash = [&](const std::string& file) { return hash_of(inputs, file); };
     *pair = {{"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
     if (!unit.pair.matches.empty()) (*pair)["matches"] = hash(unit.pair.matches);
+    for (const std::string& truth : unit.pair.equal_truths) (*pair)["equal_truths"].push_back(hash(truth));
   }
   return pairs.json();
 }
@@ -103,6 +104,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
             {"truth", absolute(unit.pair.truth)},
             {"resolution", 0}};
     if (!unit.pair.matches.empty()) pair["matches"] = absolute(unit.pair.matches);
+    for (const std::string& truth : unit.pair.equal_truths) pair["equal_truths"].push_back(absolute(truth));
     if (unit_number >= results.size()) continue;
     const UnitResult& result = results[unit_number];
     pair["resolution"] = result.resolution;

@@ -39,10 +39,10 @@ PoseScores pose_scores_of(const Json& json) {
 }
 
 Json to_json(const TaskResult& task) {
-  return {
-      {"status", to_text(task.status)},       {"selected", json_or_null(task.selected)}, {"correct", task.correct},
-      {"initial", to_json(task.initial)},     {"refined", to_json(task.refined)},        {"dense", to_json(task.dense)},
-      {"time_ms", json_or_null(task.time_ms)}};
+  return {{"status", to_text(task.status)},   {"selected", json_or_null(task.selected)},
+          {"correct", task.correct},          {"true_matches", task.true_matches},
+          {"initial", to_json(task.initial)}, {"refined", to_json(task.refined)},
+          {"dense", to_json(task.dense)},     {"time_ms", json_or_null(task.time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
@@ -53,6 +53,7 @@ TaskResult task_of(const Json& json) {
   task.status = *known;
   if (!json.at("selected").is_null()) task.selected = count_of(json.at("selected"));
   task.correct = counts_of(json.at("correct"));
+  task.true_matches = counts_of(json.at("true_matches"));
   task.initial = pose_scores_of(json.at("initial"));
   task.refined = pose_scores_of(json.at("refined"));
   task.dense = pose_scores_of(json.at("dense"));

@@ -195,9 +195,7 @@ class Collector {
         list_.units.size());
     sample.unit = place->second;
     if (is_new) {
-      DatasetPair files = dataset.pairs[static_cast<std::size_t>(pair)];
-      for (std::string* file : {&files.source, &files.target, &files.truth, &files.matches})
-        if (!file->empty()) *file = dataset.path(*file);
+      DatasetPair files = dataset.with_paths(dataset.pairs[static_cast<std::size_t>(pair)]);
       list_.units.push_back({dataset.name, files, matching, {}, {}, false, false, false, {}});
     }
     WorkUnit& unit = list_.units[static_cast<std::size_t>(sample.unit)];

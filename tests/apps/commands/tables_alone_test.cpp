@@ -145,6 +145,58 @@ TEST_F(TablesAlone, ATruthThatFitsOtherwiseIsNamed) {
   EXPECT_THAT(broken.out + broken.err, HasSubstr("m1-0.05.csv"));
 }
 
+// A symmetric object: a pose is judged by the nearest of the truths, a selection by the one that it follows.
+TEST_F(TablesAlone, SeveralTruthsAreEquallyRight) {
+  const CorrespondenceSet matches = read(place_.text("m1-0.05.csv"));
+  const RigidTransform truth = read_transform(place_ / "data/b3r/m1-0.05.txt");
+  // The rows that were incorrect become correct under a second truth.
+  const RigidTransform second{truth.rotation * RandomStream(5).rotation(), 2 * truth.translation};
+  CorrespondenceSet symmetric = matches;
+  const std::vector<bool> labels = label_correct(matches, truth, 4);
+  int changed = 0;
+  for (int row = 0; row < matches.size(); ++row)
+    if (!labels[static_cast<std::size_t>(row)]) {
+      ++changed;
+      symmetric.target_points.row(row) =
+          (second.rotation * matches.source_points.row(row).transpose() + second.translation).transpose();
+    }
+  const int kept = matches.size() - changed;
+  std::filesystem::create_directories(place_ / "two");
+  place_.put("two/dataset.toml", "name = \"b3r\"\n");
+  place_.put("two/t.csv", matches_text(symmetric));
+  place_.put("two/a.txt", transform_text(truth));
+  place_.put("two/b.txt", transform_text(second));
+  const auto oracle_and_ransac = [&](const std::string& truths) {
+    place_.put("two/pairs.csv", "pair,source,target,truth,matches,noise_pr\np,,," + truths + ",t.csv,0.05\n");
+    EXPECT_EQ(
+        place_
+            .corral("evaluate small.toml --data two -o " + truths.substr(0, 1) + "run" + std::to_string(truths.size()))
+            .status,
+        0);
+    std::map<std::string, StudyRecord> found;
+    for (const StudyRecord& record :
+         read_study(place_ / (truths.substr(0, 1) + "run" + std::to_string(truths.size()))).records)
+      found[record.method] = record;
+    return found;
+  };
+  auto first = oracle_and_ransac("a.txt"), other = oracle_and_ransac("b.txt"), both = oracle_and_ransac("a.txt;b.txt");
+  EXPECT_EQ(*first["oracle"].selected, kept);
+  EXPECT_EQ(*other["oracle"].selected, changed);
+  EXPECT_EQ(*both["oracle"].selected, std::max(kept, changed)) << "as a whole: never rows of both";
+  EXPECT_EQ(*both["oracle"].true_matches, std::max(kept, changed));
+  for (const char* method : {"ransac", "gc", "st"}) {
+    const StudyRecord& under_both = both[method];
+    EXPECT_EQ(*under_both.correct, std::max(*first[method].correct, *other[method].correct)) << method;
+    EXPECT_EQ(*under_both.recall,
+              *first[method].correct >= *other[method].correct ? *first[method].recall : *other[method].recall);
+    EXPECT_EQ(*under_both.refined.rotation_error_deg,
+              std::min(*first[method].refined.rotation_error_deg, *other[method].refined.rotation_error_deg));
+  }
+  place_.put("two/pairs.csv", "pair,source,target,truth,matches,noise_pr\np,,,a.txt;c.txt,t.csv,0.05\n");
+  const Outcome check = place_.corral("dataset check two");
+  EXPECT_THAT(check.out + check.err, HasSubstr("does not exist"));
+}
+
 TEST_F(TablesAlone, RunTakesATableAsEvaluateDoes) {
   const std::string pair = " --truth data/b3r/m2-0.25.txt --json";
   const auto matched = place_.corral("run data/b3r/m2.ply data/b3r/m2-0.25.ply -o matched" + pair + kMatching).json();
