@@ -126,7 +126,7 @@ StudyFolder simulated_study(std::uint64_t seed, int pairs) {
   return run;
 }
 
-void write_run(const StudyFolder& run) {
+std::string manifest_text(const StudyFolder& run) {
   nlohmann::ordered_json manifest = {{"experiments", nlohmann::json::array()}, {"pairs", nlohmann::json::object()}};
   for (const ExperimentInfo& info : run.experiments) {
     nlohmann::json levels = nlohmann::json::array();
@@ -149,6 +149,10 @@ void write_run(const StudyFolder& run) {
     if (pair.source_points) manifest["pairs"][name]["source_points"] = *pair.source_points;
     if (pair.source_keypoints) manifest["pairs"][name]["source_keypoints"] = *pair.source_keypoints;
   }
+  return manifest.dump();
+}
+
+void write_run(const StudyFolder& run) {
   std::string records = csv_line(record_columns());
   std::map<std::string, std::string> selections;
   for (const StudyRecord& record : run.records) {
@@ -158,7 +162,7 @@ void write_run(const StudyFolder& run) {
     for (const std::string& method : all_methods()) pair.selected[method] = {0, 1};
     selections[record.selection] = selections_text(pair, all_methods());
   }
-  std::vector<FileContent> files = {{run.folder + "/manifest.json", manifest.dump()},
+  std::vector<FileContent> files = {{run.folder + "/manifest.json", manifest_text(run)},
                                     {run.folder + "/records.csv", records}};
   for (const auto& [path, text] : selections) files.push_back({run.folder + "/" + path, text});
   for (const FileContent& file : files) make_folder(file.path.substr(0, file.path.rfind('/')));

@@ -41,6 +41,9 @@ void add_times(StudyFolder& run, const std::vector<double>& sizes,
 /// All eight experiments with the paper's levels, noisy scores from the seed, and few pairs at each level.
 StudyFolder simulated_study(std::uint64_t seed, int pairs = 12);
 
+/// manifest.json of a run.
+std::string manifest_text(const StudyFolder& run);
+
 /// manifest.json, records.csv and files of selections, as corral evaluate leaves them.
 void write_run(const StudyFolder& run);
 
