@@ -144,7 +144,7 @@ std::vector<FileContent> draw_gallery_pair(const GalleryPair& pair) {
   constexpr int kWidth = 1600, kCell = 1000, kColumn = 600;  // pixels: one picture, one of a sheet, one pose
   const ExperimentInfo& info = experiment_of(pair);
   const StudyPair& files = pair.run->pairs.at(pair.name());
-  const std::string path = (std::filesystem::path(pair.run->folder) / pair.record->selection).string();
+  const std::string path = (std::filesystem::path(pair.run->folder) / pair.record->selection.str()).string();
   const PairSelections selections = read_selections(path);
   PairScene scene;
   scene.source = painted_surface(read_mesh(files.source));

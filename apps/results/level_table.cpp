@@ -29,64 +29,95 @@ struct Layout {
   std::vector<Place> places;
 };
 
-/// Tells the tables of a pair apart: by the value of the swept attribute and, where that is the same, by their order, as
-/// each begins with repeat 0 of a method.
-class RowKeys {
+/// Tells the tables of a pair at a level apart: by the value of the swept attribute and, where that is the same, by their
+/// order, as each begins with repeat 0 of a method.
+class RowFinder {
  public:
-  using Key = std::tuple<std::string, std::string, std::string, double, int>;
-
-  Key of(const StudyRecord& record) {
-    const double value = record.value.value_or(0);
-    int& tables = tables_[{record.experiment, record.level, record.method, record.pair, value}];
-    if (record.repeat == 0 || tables == 0) ++tables;
-    return {record.experiment, record.level, record.pair, value, tables};
+  /// The row of a record at a level; `next` if none has it yet.
+  std::size_t row_of(const LevelTable& level, const StudyRecord& record, std::size_t next) {
+    Tables& tables = tables_[{&level, record.pair, record.value.value_or(0)}];
+    const auto is_it = [&](const auto& count) { return count.first == record.method; };
+    auto count = std::find_if(tables.counts.begin(), tables.counts.end(), is_it);
+    if (count == tables.counts.end()) count = tables.counts.insert(count, {record.method, 0});
+    if (record.repeat == 0 || count->second == 0) ++count->second;
+    if (count->second > tables.rows.size()) tables.rows.push_back(next);
+    return tables.rows[count->second - 1];
   }
 
  private:
-  std::map<std::tuple<std::string, std::string, std::string, std::string, double>, int> tables_;
+  /// Those of one pair with one value.
+  struct Tables {
+    std::vector<std::pair<SharedText, std::size_t>> counts;  // that each method has begun
+    std::vector<std::size_t> rows;
+  };
+  std::map<std::tuple<const LevelTable*, std::string, double>, Tables> tables_;
+};
+
+/// What the manifest says of a record's level is looked up once for a run of records.
+class LevelFinder {
+ public:
+  using Place = std::pair<std::size_t, std::size_t>;  // experiment, level
+
+  void add(const std::string& experiment, const std::string& level, const Place& place) {
+    places_[{experiment, level}] = place;
+  }
+  /// Null if there is none.
+  const Place* of(const StudyRecord& record) {
+    if (last_ && record.experiment == last_->first.first && record.level == last_->first.second) return &last_->second;
+    const auto found = places_.find({record.experiment, record.level});
+    if (found == places_.end()) return nullptr;
+    last_ = &*found;
+    return &found->second;
+  }
+
+ private:
+  using Places = std::map<std::pair<std::string, std::string>, Place>;
+  Places places_;
+  const Places::value_type* last_ = nullptr;
 };
 
 Layout lay_out(const StudyFolder& run) {
   Layout layout;
-  std::map<std::pair<std::string, std::string>, std::pair<std::size_t, std::size_t>> levels;
+  LevelFinder levels;
   for (const ExperimentInfo& info : run.experiments) {
     ExperimentTable& table = layout.tables.emplace_back();
     table.info = info;
     for (const StudyLevel& level : info.levels) {
-      levels[{info.name, level.label}] = {layout.tables.size() - 1, table.levels.size()};
+      levels.add(info.name, level.label, {layout.tables.size() - 1, table.levels.size()});
       table.levels.emplace_back().level = level;
       for (const Measure* measure : measures_with(kOfPair)) table.levels.back().of_pairs[measure->name];
     }
   }
-  RowKeys keys;
-  std::map<RowKeys::Key, std::size_t> rows;
+  RowFinder rows;
+  layout.places.reserve(run.records.size());
   for (const StudyRecord& record : run.records) {
     if (record.level.empty()) continue;
-    const auto found = levels.find({record.experiment, record.level});
-    if (found == levels.end())
+    const LevelFinder::Place* const place = levels.of(record);
+    if (!place)
       throw IoError((std::filesystem::path(run.folder) / "records.csv").string(), "",
-                    "experiment " + corral::quoted(record.experiment) + " at level " + corral::quoted(record.level) +
+                    "experiment " + corral::quoted(record.experiment.str()) + " at level " + corral::quoted(record.level.str()) +
                         " is not in manifest.json");
-    const auto [experiment, level_index] = found->second;
+    const auto [experiment, level_index] = *place;
     LevelTable& level = layout.tables[experiment].levels[level_index];
-    const auto [row, is_new] = rows.try_emplace(keys.of(record), level.pairs.size());
-    if (is_new) {
+    const std::size_t row = rows.row_of(level, record, level.pairs.size());
+    if (row == level.pairs.size()) {
       level.pairs.push_back(record.pair);
       level.selections.emplace_back();
       level.roles.push_back(role_of(record, layout.tables[experiment].info.least_true_matches));
       level.value.push_back(kAbsent);
       for (auto& [name, column] : level.of_pairs) column.push_back(kAbsent);
     }
-    layout.places.push_back({&record, experiment, level_index, row->second});
+    layout.places.push_back({&record, experiment, level_index, row});
   }
   return layout;
 }
 
 /// What all methods share.
-void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record) {
+void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record,
+              const std::vector<const Measure*>& of_pair) {
   if (!record.selection.empty()) level.selections[row] = record.selection;
   if (record.value) level.value[row] = *record.value;
-  for (const Measure* measure : measures_with(kOfPair))
+  for (const Measure* measure : of_pair)
     if (const auto number = measure->of(record)) level.of_pairs[measure->name][row] = *number;
 }
 
@@ -98,9 +129,12 @@ MethodColumns columns_of(const LevelTable& level, const MethodRecords& records, 
   for (const Measure& measure : measures()) {
     if (measure.has(kOfPair)) continue;
     RowNumbers& column = columns.numbers[measure.name];
+    column.reserve(level.pairs.size());
+    const bool is_tried = untried.count(measure.name) == 0;
+    RowNumbers numbers;
     for (std::size_t row = 0; row < level.pairs.size(); ++row) {
-      RowNumbers numbers;
-      if (untried.count(measure.name) == 0)
+      numbers.clear();
+      if (is_tried)
         for (const StudyRecord* record : records[row])
           numbers.push_back(counted_number(measure, *record, level.roles[row]));
       column.push_back(mean_of(numbers));
@@ -157,23 +191,25 @@ std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
   const auto level_of = [&](const Place& place) -> LevelTable& {
     return layout.tables[place.experiment].levels[place.level];
   };
-  for (const Place& place : layout.places) fill_row(level_of(place), place.row, *place.record);
-  std::set<std::string> if_tried;
-  for (const Measure* measure : measures_with(kIfTried)) if_tried.insert(measure->name);
-  std::vector<std::set<std::string>> untried(layout.tables.size(), if_tried);
+  const std::vector<const Measure*> of_pair = measures_with(kOfPair), if_tried = measures_with(kIfTried);
+  for (const Place& place : layout.places) fill_row(level_of(place), place.row, *place.record, of_pair);
+  std::set<std::string> never;
+  for (const Measure* measure : if_tried) never.insert(measure->name);
+  std::vector<std::set<std::string>> untried(layout.tables.size(), never);
   std::map<std::tuple<std::size_t, std::size_t, std::string>, MethodRecords> cells;
   for (const Place& place : layout.places) {
     if (place.record->status.state == MethodState::NotApplicable) continue;  // not tried
     MethodRecords& rows = cells[{place.experiment, place.level, place.record->method}];
     rows.resize(level_of(place).pairs.size());
     rows[place.row].push_back(place.record);
-    for (const std::string& name : if_tried)
-      if (measure(name).of(*place.record)) untried[place.experiment].erase(name);
+    for (const Measure* measure : if_tried)
+      if (measure->of(*place.record)) untried[place.experiment].erase(measure->name);
   }
-  for (const auto& [key, records] : cells) {
+  for (auto& [key, records] : cells) {
     const auto& [experiment, level_index, method] = key;
     LevelTable& level = layout.tables[experiment].levels[level_index];
     level.methods[method] = columns_of(level, records, untried[experiment]);
+    MethodRecords().swap(records);
   }
   return std::move(layout.tables);
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "apps/results/study_record.h"
 
+#include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "apps/results/measures.h"
 #include "io/csv_file.h"
+#include "io/file.h"
 #include "io/line_reader.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -37,7 +40,7 @@ void visit_columns(Record& record, Visitor&& visit) {
   visit("selection", record.selection);
 }
 
-std::string cell_text(const std::string& value) { return value; }
+std::string cell_text(const SharedText& value) { return value; }
 std::string cell_text(const MethodStatus& value) { return to_text(value); }
 std::string cell_text(int value) { return std::to_string(value); }
 std::string cell_text(double value) { return to_text(value); }
@@ -46,10 +49,6 @@ std::string cell_text(const std::optional<Value>& value) {
   return value ? cell_text(*value) : std::string();
 }
 
-bool parse_cell(const std::string& cell, std::string& value) {
-  value = cell;
-  return true;
-}
 bool parse_cell(const std::string& cell, MethodStatus& value) {
   const auto status = parse_status(cell);
   if (status) value = *status;
@@ -76,14 +75,58 @@ bool parse_cell(const std::string& cell, std::optional<Value>& value) {
   return true;
 }
 
-/// The value is that of any attribute.
-template <class Value>
-bool is_in_range(const std::string&, const Value&) {
-  return true;
-}
-bool is_in_range(const std::string& name, const std::optional<double>& value) {
-  return !value || name == "value" || (*value >= 0 && *value <= measure(name).largest);
-}
+/// Reads the cells of a column of records.csv into records.
+class RecordReader {
+ public:
+  explicit RecordReader(const CsvReader& table, const std::string& path) : path_(path) {
+    for (const std::string& name : record_columns()) {
+      const auto found = std::find(table.header().begin(), table.header().end(), name);
+      if (found == table.header().end()) throw IoError(path, "header", "the column " + name + " is missing");
+      const auto is_it = [&](const Measure& measure) { return measure.name == name; };
+      const auto measured = std::find_if(measures().begin(), measures().end(), is_it);
+      columns_.push_back({static_cast<std::size_t>(found - table.header().begin()),
+                          measured == measures().end() ? std::nullopt : std::optional<double>(measured->largest),
+                          SharedText()});
+    }
+  }
+
+  StudyRecord read(const std::vector<std::string>& cells, std::size_t row) {
+    StudyRecord record;
+    auto column = columns_.begin();
+    visit_columns(record, [&](const auto& name, auto& field) {
+      const std::string& cell = cells[column->place];
+      if (!parse(cell, field, *column))
+        throw IoError(path_, "row " + std::to_string(row),
+                      name + (" is " + quoted(cell)) + ", which is no value of that column");
+      ++column;
+    });
+    return record;
+  }
+
+ private:
+  struct Column {
+    std::size_t place;              // in the file
+    std::optional<double> largest;  // of a measure
+    SharedText last;                // of a text: most rows have that of the row before
+  };
+
+  bool parse(const std::string& cell, SharedText& field, Column& column) {
+    if (!(column.last == cell)) column.last = texts_.emplace(cell, cell).first->second;
+    field = column.last;
+    return true;
+  }
+  static bool parse(const std::string& cell, std::optional<double>& field, const Column& column) {
+    return parse_cell(cell, field) && (!field || !column.largest || (*field >= 0 && *field <= *column.largest));
+  }
+  template <class Value>
+  static bool parse(const std::string& cell, Value& field, const Column&) {
+    return parse_cell(cell, field);
+  }
+
+  const std::string& path_;
+  std::vector<Column> columns_;
+  std::unordered_map<std::string, SharedText> texts_;
+};
 
 }  // namespace
 
@@ -91,7 +134,7 @@ const std::vector<std::string>& record_columns() {
   static const std::vector<std::string> columns = [] {
     std::vector<std::string> names;
     const StudyRecord record;
-    visit_columns(record, [&](const std::string& name, const auto&) { names.push_back(name); });
+    visit_columns(record, [&](const std::string& name, const auto&) { names.emplace_back(name); });
     return names;
   }();
   return columns;
@@ -104,19 +147,12 @@ std::string record_line(const StudyRecord& record) {
 }
 
 std::vector<StudyRecord> read_records(const std::string& path) {
-  const CsvTable table = read_csv(path);
-  for (const std::string& name : record_columns())
-    if (table.column(name) < 0) throw IoError(path, "header", "the column " + name + " is missing");
+  const std::string text = read_file(path);
+  CsvReader table(path, text);
+  RecordReader reader(table, path);
   std::vector<StudyRecord> records;
-  for (const auto& cells : table.rows) {
-    StudyRecord& record = records.emplace_back();
-    visit_columns(record, [&](const std::string& name, auto& field) {
-      const std::string& cell = cells[static_cast<std::size_t>(table.column(name))];
-      if (!parse_cell(cell, field) || !is_in_range(name, field))
-        throw IoError(path, "row " + std::to_string(records.size()),
-                      name + " is " + quoted(cell) + ", which is no value of that column");
-    });
-  }
+  records.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
+  while (table.next()) records.push_back(reader.read(table.cells(), records.size() + 1));
   return records;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/pair/method_status.h"
+#include "apps/results/shared_text.h"
 
 namespace corral {
 
@@ -18,19 +19,19 @@ struct PoseScores {
 };
 
 /// A row of records.csv: one grouper on one pair at one level of one experiment. "oracle" (all correct matches) and
-/// "baseline" (all matches) are listed like groupers where the truth is known.
+/// "baseline" (all matches) are listed like groupers where the truth is known. Records share their texts: a study has millions.
 struct StudyRecord {
-  std::string experiment, dataset, level, pair, method;
+  SharedText experiment, dataset, level, pair, method;
   int repeat = 0;               ///< from 0
   std::optional<double> value;  ///< of the swept attribute
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
-  std::string truth;            ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
+  SharedText truth;             ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
   PoseScores initial, refined, dense;           ///< of the fit to the selection, the refined and the dense pose
   std::optional<double> time_ms;                ///< of the grouping alone
-  std::string selection;                        ///< file of selections in the study folder; empty if there is none
+  SharedText selection;                         ///< file of selections in the study folder; empty if there is none
 };
 
 /// The names of the columns, in order.
