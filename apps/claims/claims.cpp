@@ -8,7 +8,7 @@
 #include <set>
 
 #include "apps/claims/claim_measure.h"
-#include "apps/results/statistics.h"
+#include "apps/results/bootstrap.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 
@@ -86,11 +86,13 @@ Draws all_rows(const Study& study) {
   return draws;
 }
 
-void resample(const Study& study, int repeat, Draws& draws) {
-  for (std::size_t slot = 0; slot < draws.size(); ++slot) {
+Draws resampled(const Study& study, int repeat) {
+  Draws draws;
+  for (std::size_t slot = 0; slot < study.sizes.size(); ++slot) {
     RandomStream stream(derive_seed(study.seeds[slot] + static_cast<std::uint64_t>(repeat), "claims"));
-    for (int& row : draws[slot]) row = static_cast<int>(stream.below(study.sizes[slot]));
+    for (int& row : draws.emplace_back(study.sizes[slot])) row = static_cast<int>(stream.below(study.sizes[slot]));
   }
+  return draws;
 }
 
 /// A rule and the numbers that it is about.
@@ -215,19 +217,21 @@ ClaimVerdict judge(const ClaimBook& book, const Claim& claim, const Study& study
   return verdict;
 }
 
-void count_changes(const ClaimBook& book, const Study& study, std::vector<ClaimVerdict>& verdicts) {
+void count_changes(const ClaimBook& book, const Study& study, const ParallelFor& parallel_for,
+                   std::vector<ClaimVerdict>& verdicts) {
   std::vector<std::vector<Rule>> rules;
   for (const Claim& claim : book.claims) rules.push_back(rules_of(book, claim, study.data, false));
-  Draws draws = all_rows(study);
-  for (int repeat = 0; repeat < kResamples; ++repeat) {
-    resample(study, repeat, draws);
+  std::vector<std::vector<char>> changed(kResamples, std::vector<char>(rules.size()));
+  parallel_for(kResamples, [&](int repeat) {
+    const Draws draws = resampled(study, repeat);
     for (std::size_t i = 0; i < rules.size(); ++i)
       if (verdicts[i].verdict != Verdict::Undecidable)
-        verdicts[i].changed += verdict_of(rules[i], draws) != verdicts[i].verdict;
-  }
-  for (ClaimVerdict& verdict : verdicts) {
-    verdict.changed /= kResamples;
-    verdict.is_weak = verdict.changed > kWeakShare;
+        changed[static_cast<std::size_t>(repeat)][i] = verdict_of(rules[i], draws) != verdicts[i].verdict;
+  });
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    const auto count = std::count_if(changed.begin(), changed.end(), [&](const auto& of) { return of[i] != 0; });
+    verdicts[i].changed = static_cast<double>(count) / kResamples;
+    verdicts[i].is_weak = verdicts[i].changed > kWeakShare;
   }
 }
 
@@ -244,12 +248,13 @@ std::string verdict_name(Verdict verdict) {
   }
 }
 
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies) {
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies,
+                                       const ParallelFor& parallel_for) {
   const Study study = study_of(book, studies);
   const Draws draws = all_rows(study);
   std::vector<ClaimVerdict> verdicts;
   for (const Claim& claim : book.claims) verdicts.push_back(judge(book, claim, study, draws));
-  count_changes(book, study, verdicts);
+  count_changes(book, study, parallel_for, verdicts);
   return verdicts;
 }
 

@@ -45,6 +45,7 @@ struct ClaimVerdict {
 };
 
 /// Judges every claim on what several studies hold together. Throws InvalidInput if two of them have the same experiment.
-std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies);
+std::vector<ClaimVerdict> judge_claims(const ClaimBook& book, const std::vector<StudyResults>& studies,
+                                       const ParallelFor& parallel_for = one_by_one);
 
 }  // namespace corral

@@ -3,6 +3,7 @@
 #include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
 #include "apps/runtime/output.h"
+#include "apps/runtime/workers.h"
 
 namespace corral {
 namespace {
@@ -16,7 +17,7 @@ struct Settings {
 int judge(const Settings& settings) {
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
   const std::vector<StudyFolder> runs = read_runs(settings.runs);
-  const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs));
+  const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs), workers(0));
   if (!settings.json) {
     put("", claims_text(verdicts, book.slips));
     return kOk;

@@ -6,6 +6,7 @@
 #include "apps/results/comparison.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
+#include "apps/runtime/workers.h"
 
 namespace corral {
 namespace {
@@ -121,7 +122,7 @@ int compare(const Settings& settings) {
   for (const ExperimentTable& table : experiment_tables(read_study(settings.run))) {
     names += (names.empty() ? "" : ", ") + table.info.name;
     if (settings.experiment.empty() || settings.experiment == table.info.name)
-      comparisons.push_back(compare_methods(table, measure));
+      comparisons.push_back(compare_methods(table, measure, workers(0)));
   }
   if (comparisons.empty() && !settings.experiment.empty())
     throw UsageError("--experiment " + settings.experiment + ": the study has " + (names.empty() ? "none" : names));

@@ -14,6 +14,7 @@
 #include "apps/report/study_figures.h"
 #include "apps/results/comparison.h"
 #include "apps/runtime/progress.h"
+#include "apps/runtime/workers.h"
 #include "io/file.h"
 #include "kernel/error.h"
 
@@ -32,7 +33,7 @@ std::vector<RankDiagram> rank_diagrams(const std::vector<StudyResults>& studies)
   for (const StudyResults& study : studies)
     for (const ExperimentTable& table : study.tables)
       for (const Measure* measure : {&corral::measure("f1"), &corral::measure("success_5pr")}) {
-        const MethodComparison compared = compare_methods(table, *measure);
+        const MethodRanks compared = rank_methods(table, *measure);
         if (compared.methods.size() < 2 || compared.pairs < 2) continue;
         const ExperimentInfo& info = table.info;
         diagrams.push_back({file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-ranks-" + measure->title,
@@ -92,7 +93,7 @@ void write_page(const std::vector<StudyFolder>& runs, const std::vector<StudyRes
   const ClaimBook book = built_in_claims();
   PageOptions options;
   options.pairs_in_3d = settings.pairs_in_3d;
-  options.verdicts = judge_claims(book, studies);
+  options.verdicts = judge_claims(book, studies, workers(0));
   const std::string folder = settings.output + "/";
   write_file(folder + "claims.txt", claims_text(*options.verdicts, book.slips));
   write_file(folder + "index.html", report_page(runs, studies, options));
@@ -100,7 +101,7 @@ void write_page(const std::vector<StudyFolder>& runs, const std::vector<StudyRes
 
 int report(const Settings& settings) {
   const std::vector<StudyFolder> runs = read_runs(settings.runs);
-  const std::vector<StudyResults> studies = results_of(runs);
+  const std::vector<StudyResults> studies = results_of(runs, workers(0));
   const StudyFigures figures = study_figures(studies);
   const std::vector<GalleryPair> gallery = choose_gallery(runs, settings.pairs);
   const std::string folder = settings.output + "/", pictures = folder + kPictures;
@@ -139,7 +140,8 @@ void add_report(CLI::App& app, Action& action) {
       ->type_name("NAMES")
       ->delimiter(',');
   command
-      ->add_option("--pairs-in-3d", settings->pairs_in_3d, "Number of pairs whose surfaces and matches are on the page")
+      ->add_option("--pairs-in-3d", settings->pairs_in_3d,
+                   "Most pairs whose surfaces and matches are on the page, as far as they fit into its 20 MB")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   command->footer(

@@ -66,41 +66,70 @@ std::uint64_t seed_of(const std::string& experiment, const std::string& what) {
   return derive_seed(derive_seed(kSeed, experiment), what);
 }
 
-std::vector<MethodPair> test_pairs(const MethodComparison& comparison, const std::vector<std::vector<double>>& scores,
-                                   const Measure& measure) {
-  std::vector<MethodPair> tests;
-  std::vector<double> p;
+using Scores = std::vector<std::vector<double>>;  // [method][pair]
+
+MethodPair test_pair(const MethodRanks& ranks, std::size_t a, std::size_t b, const Scores& scores,
+                     const Measure& measure) {
+  MethodPair test{ranks.methods[a], ranks.methods[b], {}, 1, 1, true};
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < scores[a].size(); ++i) differences.push_back(scores[a][i] - scores[b][i]);
+  test.difference = bootstrap_mean(differences, seed_of(ranks.experiment, test.first + " - " + test.second));
+  if (measure.has(kYesOrNo)) {
+    const auto above = std::count_if(differences.begin(), differences.end(), [](double d) { return d > 0; });
+    const auto below = std::count_if(differences.begin(), differences.end(), [](double d) { return d < 0; });
+    test.p = mcnemar(static_cast<int>(above), static_cast<int>(below)).exact_p;
+  } else {
+    const WilcoxonTest wilcoxon = wilcoxon_signed_rank(differences);
+    test.p = wilcoxon.p;
+    test.is_exact = wilcoxon.is_exact;
+  }
+  return test;
+}
+
+std::vector<MethodPair> test_pairs(const MethodRanks& ranks, const Scores& scores, const Measure& measure,
+                                   const ParallelFor& parallel_for) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t a = 0; a < scores.size(); ++a)
-    for (std::size_t b = a + 1; b < scores.size(); ++b) {
-      MethodPair test{comparison.methods[a], comparison.methods[b], {}, 1, 1, true};
-      std::vector<double> differences;
-      for (std::size_t i = 0; i < scores[a].size(); ++i) differences.push_back(scores[a][i] - scores[b][i]);
-      test.difference = bootstrap_mean(differences, seed_of(comparison.experiment, test.first + " - " + test.second));
-      if (measure.has(kYesOrNo)) {
-        const auto above = std::count_if(differences.begin(), differences.end(), [](double d) { return d > 0; });
-        const auto below = std::count_if(differences.begin(), differences.end(), [](double d) { return d < 0; });
-        test.p = mcnemar(static_cast<int>(above), static_cast<int>(below)).exact_p;
-      } else {
-        const WilcoxonTest wilcoxon = wilcoxon_signed_rank(differences);
-        test.p = wilcoxon.p;
-        test.is_exact = wilcoxon.is_exact;
-      }
-      tests.push_back(test);
-      p.push_back(test.p);
-    }
+    for (std::size_t b = a + 1; b < scores.size(); ++b) pairs.emplace_back(a, b);
+  std::vector<MethodPair> tests(pairs.size());
+  parallel_for(static_cast<int>(pairs.size()), [&](int i) {
+    const auto place = static_cast<std::size_t>(i);
+    tests[place] = test_pair(ranks, pairs[place].first, pairs[place].second, scores, measure);
+  });
+  std::vector<double> p;
+  for (const MethodPair& test : tests) p.push_back(test.p);
   const std::vector<double> adjusted = holm_adjusted(p);
   for (std::size_t i = 0; i < tests.size(); ++i) tests[i].adjusted_p = adjusted[i];
   return tests;
 }
 
-std::vector<LevelMean> level_means(const ExperimentTable& table, const std::vector<std::string>& methods,
-                                   const Measure& measure) {
+std::vector<LevelMean> means_of_levels(const ExperimentTable& table, const std::vector<std::string>& methods,
+                                       const Measure& measure, const ParallelFor& parallel_for) {
+  const std::size_t count = table.levels.size() * methods.size();
+  std::vector<std::optional<MeanInterval>> found(count);
+  const auto level_of = [&](std::size_t i) -> const LevelTable& { return table.levels[i / methods.size()]; };
+  const auto method_of = [&](std::size_t i) { return methods[i % methods.size()]; };
+  parallel_for(static_cast<int>(count), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    found[i] = level_means(table.info.name, level_of(i), method_of(i), {&measure}).front();
+  });
   std::vector<LevelMean> means;
-  for (const LevelTable& level : table.levels)
-    for (const std::string& method : methods)
-      if (const auto mean = level_mean(table.info.name, level, method, measure))
-        means.push_back({level.level.label, method, present_in(*level.column(measure, method)), *mean});
+  for (std::size_t i = 0; i < count; ++i)
+    if (found[i])
+      means.push_back(
+          {level_of(i).level.label, method_of(i), present_in(*level_of(i).column(measure, method_of(i))), *found[i]});
   return means;
+}
+
+/// Fills what is there without resamples.
+void rank(MethodRanks& ranks, const Scores& scores, const Measure& measure) {
+  if (scores.size() < 2 || scores.front().empty()) return;
+  ranks.pairs = static_cast<int>(scores.front().size());
+  Scores goodness = scores;
+  if (measure.better == Better::Smaller)
+    for (std::vector<double>& of_method : goodness)
+      for (double& score : of_method) score = -score;
+  ranks.ranks = compare_ranks(goodness);
 }
 
 }  // namespace
@@ -121,30 +150,44 @@ const Measure& metric_of(const std::string& name) {
   throw InvalidInput("comparison", "metric", name, "one of " + accepted);
 }
 
-std::optional<MeanInterval> level_mean(const std::string& experiment, const LevelTable& level,
-                                       const std::string& method, const Measure& measure) {
-  const RowNumbers* column = level.column(measure, method);
-  if (!column || present_in(*column) == 0) return std::nullopt;
-  const std::vector<double> numbers = present(*column);
-  return bootstrap_mean(numbers, seed_of(experiment, level.level.label + " " + method));
+std::vector<std::optional<MeanInterval>> level_means(const std::string& experiment, const LevelTable& level,
+                                                     const std::string& method,
+                                                     const std::vector<const Measure*>& measures) {
+  std::vector<std::vector<double>> numbers;
+  std::map<std::size_t, std::vector<std::size_t>> by_count;  // columns of as many numbers are drawn together
+  for (const Measure* measure : measures) {
+    const RowNumbers* column = level.column(*measure, method);
+    numbers.push_back(column ? present(*column) : RowNumbers());
+    if (!numbers.back().empty()) by_count[numbers.back().size()].push_back(numbers.size() - 1);
+  }
+  std::vector<std::optional<MeanInterval>> means(measures.size());
+  for (const auto& [count, places] : by_count) {
+    std::vector<std::vector<double>> columns;
+    for (const std::size_t place : places) columns.push_back(std::move(numbers[place]));
+    const auto intervals = bootstrap_means(columns, seed_of(experiment, level.level.label + " " + method));
+    for (std::size_t i = 0; i < places.size(); ++i) means[places[i]] = intervals[i];
+  }
+  return means;
 }
 
-MethodComparison compare_methods(const ExperimentTable& table, const Measure& measure) {
+MethodRanks rank_methods(const ExperimentTable& table, const Measure& measure) {
+  MethodRanks ranks{table.info.name, methods_with_numbers(table, measure), 0, {}};
+  rank(ranks, common_scores(table, ranks.methods, measure), measure);
+  return ranks;
+}
+
+MethodComparison compare_methods(const ExperimentTable& table, const Measure& measure,
+                                 const ParallelFor& parallel_for) {
   MethodComparison comparison;
   comparison.experiment = table.info.name;
   comparison.methods = methods_with_numbers(table, measure);
-  comparison.levels = level_means(table, comparison.methods, measure);
-  const std::vector<std::vector<double>> scores = common_scores(table, comparison.methods, measure);
-  if (scores.size() < 2 || scores.front().empty()) return comparison;
-  comparison.pairs = static_cast<int>(scores.front().size());
+  comparison.levels = means_of_levels(table, comparison.methods, measure, parallel_for);
+  const Scores scores = common_scores(table, comparison.methods, measure);
+  rank(comparison, scores, measure);
+  if (comparison.pairs == 0) return comparison;
   for (std::size_t i = 0; i < scores.size(); ++i)
     comparison.means.push_back(bootstrap_mean(scores[i], seed_of(table.info.name, comparison.methods[i])));
-  std::vector<std::vector<double>> goodness = scores;
-  if (measure.better == Better::Smaller)
-    for (std::vector<double>& of_method : goodness)
-      for (double& score : of_method) score = -score;
-  comparison.ranks = compare_ranks(goodness);
-  comparison.tests = test_pairs(comparison, scores, measure);
+  comparison.tests = test_pairs(comparison, scores, measure, parallel_for);
   return comparison;
 }
 

@@ -5,19 +5,16 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "kernel/error.h"
-#include "kernel/random.h"
 
 namespace corral {
 namespace {
 
 double normal_cdf(double z) { return boost::math::cdf(boost::math::normal(), z); }
-double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
 double normal_tail(double z) { return boost::math::cdf(boost::math::complement(boost::math::normal(), z)); }
 double chi_square_tail(double value, int freedom) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), value));
@@ -30,13 +27,6 @@ double quantile_of_sorted(const std::vector<double>& sorted, double p) {
   if (below + 1 >= sorted.size()) return sorted.back();
   const double share = place - static_cast<double>(below), step = sorted[below + 1] - sorted[below];
   return share > 0 && step > 0 ? sorted[below] + share * step : sorted[below];  // values may be infinite
-}
-
-/// Where BCa reads the sorted resamples instead of at the level whose normal quantile is z.
-double bca_level(double z, double bias, double acceleration) {
-  const double shifted = bias + z, denominator = 1 - acceleration * shifted;
-  if (!(denominator > 0)) return z < 0 ? 0 : 1;
-  return normal_cdf(bias + shifted / denominator);
 }
 
 /// How often each sum of positive ranks occurs among the 2^n signs of the ranks 1 .. n; exact up to n = 53.
@@ -73,35 +63,6 @@ void check_scores(const std::vector<std::vector<double>>& scores) {
 }
 
 }  // namespace
-
-MeanInterval bootstrap_mean(const std::vector<double>& values, std::uint64_t seed) {
-  if (values.empty()) throw InvalidInput("bootstrap_mean", "values", "none", "one or more");
-  const std::size_t n = values.size();
-  const auto count = static_cast<double>(n);
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-  double squares = 0, cubes = 0;
-  for (const double value : values) {
-    const double off = value - mean;
-    squares += off * off;
-    cubes += off * off * off;
-  }
-  if (n == 1 || !(squares > 0)) return {mean, mean, mean};
-  RandomStream stream(seed);
-  std::vector<double> means(kResamples);
-  for (double& resampled : means) {
-    for (std::size_t i = 0; i < n; ++i) resampled += values[stream.below(n)];
-    resampled /= count;
-  }
-  std::sort(means.begin(), means.end());
-  const auto below = std::lower_bound(means.begin(), means.end(), mean) - means.begin();
-  const auto not_above = std::upper_bound(means.begin(), means.end(), mean) - means.begin();
-  const double share = static_cast<double>(below + not_above) / 2 / kResamples;
-  const double bias = normal_quantile(std::clamp(share, 1.0 / kResamples, 1 - 1.0 / kResamples));
-  const double acceleration = cubes / (6 * std::pow(squares, 1.5));
-  const double z = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
-  return {mean, quantile_of_sorted(means, bca_level(-z, bias, acceleration)),
-          quantile_of_sorted(means, bca_level(z, bias, acceleration))};
-}
 
 double quantile_of(std::vector<double> values, double p) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();

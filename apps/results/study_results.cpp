@@ -41,9 +41,9 @@ std::vector<StudyResults> tables_of(const std::vector<StudyFolder>& runs) {
   return results;
 }
 
-std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs) {
+std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs, const ParallelFor& parallel_for) {
   std::vector<StudyResults> results = tables_of(runs);
-  for (StudyResults& study : results) study.summary = summarize(study.tables);
+  for (StudyResults& study : results) study.summary = summarize(study.tables, parallel_for);
   return results;
 }
 

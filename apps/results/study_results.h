@@ -28,9 +28,10 @@ struct StudyResults {
   std::vector<ExperimentTable> tables;  ///< of each experiment
   std::vector<SummaryRow> summary;
 };
-std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs);
-std::vector<StudyResults> results_of(std::vector<StudyFolder>&& runs) = delete;
-/// The same without the summary, whose intervals take a second.
+std::vector<StudyResults> results_of(const std::vector<StudyFolder>& runs,
+                                     const ParallelFor& parallel_for = one_by_one);
+std::vector<StudyResults> results_of(std::vector<StudyFolder>&& runs, const ParallelFor& = one_by_one) = delete;
+/// The same without the summary, whose intervals take most of the time.
 std::vector<StudyResults> tables_of(const std::vector<StudyFolder>& runs);
 
 /// Throws IoError as read_study.

@@ -40,14 +40,18 @@ double average(const LevelTable& level, const std::string& method, const Measure
   return measure.has(kOfPair) ? judged_mean(level, column) : mean_of(column);
 }
 
-SummaryValue value_of(const std::string& experiment, const LevelTable& level, const std::string& method,
-                      const Measure& measure) {
-  if (measure.has(kHeadline)) {
-    const auto mean = level_mean(experiment, level, method, measure);
-    return mean ? SummaryValue{mean->mean, mean->low, mean->high} : SummaryValue();
+/// The mean over rows, or what else stands for a level.
+void add_values(const std::string& experiment, const LevelTable& level, SummaryRow& row) {
+  const std::vector<const Measure*> headline = measures_with(kHeadline);
+  const auto means = level_means(experiment, level, row.method, headline);
+  for (std::size_t i = 0; i < headline.size(); ++i)
+    row.values[headline[i]->name] =
+        means[i] ? SummaryValue{means[i]->mean, means[i]->low, means[i]->high} : SummaryValue();
+  for (const Measure& measure : measures()) {
+    if (measure.average == Average::None || measure.has(kHeadline)) continue;
+    const double number = average(level, row.method, measure);
+    row.values[measure.name].value = std::isfinite(number) ? std::optional<double>(number) : std::nullopt;  // no pose
   }
-  const double number = average(level, method, measure);
-  return {std::isfinite(number) ? std::optional<double>(number) : std::nullopt, {}, {}};  // a median may be no pose
 }
 
 SummaryRow row_of(const ExperimentInfo& info, const LevelTable& level, const std::string& method) {
@@ -61,8 +65,7 @@ SummaryRow row_of(const ExperimentInfo& info, const LevelTable& level, const std
   row.pairs = present_in(found->second.numbers.at("precision"));
   row.empty = found->second.empty;
   row.failed += found->second.failed;
-  for (const Measure& measure : measures())
-    if (measure.average != Average::None) row.values[measure.name] = value_of(info.name, level, method, measure);
+  add_values(info.name, level, row);
   return row;
 }
 
@@ -89,14 +92,24 @@ std::vector<SummaryCell> summary_cells(const SummaryRow& row) {
   return cells;
 }
 
-std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables) {
-  std::vector<SummaryRow> rows;
+std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables, const ParallelFor& parallel_for) {
+  struct Place {
+    const ExperimentTable* table;
+    const LevelTable* level;
+    std::string method;
+  };
+  std::vector<Place> places;
   for (const ExperimentTable& table : tables) {
     std::vector<std::string> methods = table.info.methods;
     methods.insert(methods.end(), {"oracle", "baseline"});
     for (const LevelTable& level : table.levels)
-      for (const std::string& method : methods) rows.push_back(row_of(table.info, level, method));
+      for (const std::string& method : methods) places.push_back({&table, &level, method});
   }
+  std::vector<SummaryRow> rows(places.size());
+  parallel_for(static_cast<int>(places.size()), [&](int number) {
+    const Place& place = places[static_cast<std::size_t>(number)];
+    rows[static_cast<std::size_t>(number)] = row_of(place.table->info, *place.level, place.method);
+  });
   return rows;
 }
 

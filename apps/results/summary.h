@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/results/level_table.h"
+#include "kernel/parallel.h"
 
 namespace corral {
 
@@ -42,7 +43,8 @@ struct SummaryCell {
 std::vector<SummaryCell> summary_cells(const SummaryRow& row);
 
 /// Every level and method of every experiment (bounds behind the methods), in their order; pairs = 0 where nothing was.
-std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables);
+std::vector<SummaryRow> summarize(const std::vector<ExperimentTable>& tables,
+                                  const ParallelFor& parallel_for = one_by_one);
 
 /// As the file summary.csv.
 std::string summary_text(const std::vector<SummaryRow>& rows);

@@ -7,6 +7,8 @@
 
 #include <map>
 
+#include "apps/claims/claim_report.h"
+#include "apps/runtime/workers.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "tests/io/scratch.h"
@@ -31,7 +33,7 @@ Verdicts judge(const std::vector<StudyFolder>& runs) {
 
 /// One experiment in which a method's precision and recall are given by its name and level.
 StudyFolder run_with(const std::string& name, const std::vector<StudyLevel>& levels,
-                   const std::function<Scores(const std::string&, double)>& scores, int pairs = 6) {
+                     const std::function<Scores(const std::string&, double)>& scores, int pairs = 6) {
   StudyFolder run;
   testing::add_experiment(
       run, {name, "set", levels, pairs, name == "threshold", 0.2,
@@ -59,7 +61,10 @@ TEST(Claims, AllAreDecidedOnACompleteRun) {
   testing::write_run(run);
   int decided[2] = {};
   const std::vector<StudyFolder> runs = {read_study(run.folder)};
-  for (const ClaimVerdict& verdict : judge_claims(built_in_claims(), tables_of(runs))) {
+  const std::vector<StudyResults> tables = tables_of(runs);
+  const std::vector<ClaimVerdict> verdicts = judge_claims(built_in_claims(), tables);
+  EXPECT_EQ(claims_text(judge_claims(built_in_claims(), tables, workers(3)), {}), claims_text(verdicts, {}));
+  for (const ClaimVerdict& verdict : verdicts) {
     EXPECT_NE(verdict.verdict, Verdict::Undecidable) << verdict.id << " " << verdict.parts.front().reason;
     EXPECT_TRUE(verdict.margin) << verdict.id;
     EXPECT_FALSE(verdict.experiments.empty()) << verdict.id;
@@ -253,7 +258,7 @@ TEST(Claims, LookAtSeveralExperiments) {
 TEST(Claims, PutRunsTogether) {
   const auto scores = [](const std::string& method, double) { return Scores{method == "gc" ? 0.9 : 0.4, 0.4}; };
   const StudyFolder clutter = run_with("clutter", {bin(65, 70)}, scores),
-                  overlap = run_with("overlap", {bin(30, 40)}, scores);
+                    overlap = run_with("overlap", {bin(30, 40)}, scores);
   EXPECT_EQ(judge({clutter, overlap}).at("C68").verdict, Verdict::Holds);
   EXPECT_THROW(judge({clutter, clutter}), IoError);
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "apps/runtime/workers.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "tests/support/program.h"
@@ -40,6 +41,33 @@ const MethodPair& find(const MethodComparison& comparison, const std::string& fi
   for (const MethodPair& pair : comparison.tests)
     if (pair.first == first && pair.second == second) return pair;
   throw InvalidInput("test", "pair", first + " " + second, "one that was tested");
+}
+
+TEST(Comparison, IsTheSameForAnyNumberOfThreads) {
+  const ExperimentTable table = experiment_tables(run_of(false)).at(0);
+  const MethodComparison one = compare_methods(table, measure("f1")),
+                         three = compare_methods(table, measure("f1"), workers(3));
+  ASSERT_EQ(one.tests.size(), 21u);
+  ASSERT_EQ(three.tests.size(), 21u);
+  for (std::size_t i = 0; i < one.tests.size(); ++i) {
+    EXPECT_EQ(three.tests[i].first + three.tests[i].second, one.tests[i].first + one.tests[i].second);
+    EXPECT_EQ(three.tests[i].difference.low, one.tests[i].difference.low);
+    EXPECT_EQ(three.tests[i].adjusted_p, one.tests[i].adjusted_p);
+  }
+  ASSERT_EQ(three.levels.size(), one.levels.size());
+  for (std::size_t i = 0; i < one.levels.size(); ++i) EXPECT_EQ(three.levels[i].mean.high, one.levels[i].mean.high);
+  EXPECT_EQ(rank_methods(table, measure("f1")).ranks.average_ranks, one.ranks.average_ranks);
+}
+
+TEST(Comparison, MeasuresOfALevelAreDrawnAsIfAlone) {
+  const LevelTable level = experiment_tables(run_of(false)).at(0).levels.at(0);
+  const Measure &f1 = measure("f1"), &precision = measure("precision"), &time = measure("time_ms");
+  const auto all = level_means("noise", level, "nnsr", {&f1, &time, &precision});
+  const auto alone = level_means("noise", level, "nnsr", {&precision});
+  EXPECT_FALSE(all.at(1)) << "no time was taken";
+  EXPECT_EQ(all.at(2)->low, alone.at(0)->low);
+  EXPECT_EQ(all.at(2)->high, alone.at(0)->high);
+  EXPECT_NE(all.at(0)->low, alone.at(0)->low);
 }
 
 TEST(Comparison, TellsDifferenceFromChance) {

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "apps/results/comparison.h"
+#include "apps/runtime/workers.h"
 #include "io/csv_file.h"
 #include "kernel/number_text.h"
 #include "tests/io/scratch.h"
+#include "tests/support/simulated_run.h"
 
 namespace corral {
 namespace {
@@ -154,6 +156,11 @@ TEST(Summary, IntervalsAreThoseOfTheComparison) {
     EXPECT_EQ(cell(0, name + "_high"), to_text(mean.high));
     EXPECT_EQ(cell(3, name) + cell(3, name + "_low") + cell(3, name + "_high"), "");  // a level without a pair
   }
+}
+
+TEST(Summary, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<ExperimentTable> tables = experiment_tables(testing::simulated_study(1, 4));
+  EXPECT_EQ(summary_text(summarize(tables, workers(3))), summary_text(summarize(tables)));
 }
 
 TEST(Summary, WhatIsExcludedIsSoForAllMethods) {
