@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "apps/report/page.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
 #include "apps/claims/claim_report.h"
+#include "apps/report/page_sample.h"
 #include "apps/report/page_scenes.h"
 #include "apps/report/page_tables.h"
 #include "apps/runtime/embedded_files.h"
@@ -62,20 +64,23 @@ std::string libraries(const std::string& folder) {
 
 std::string report_page(const std::vector<StudyFolder>& runs, const std::vector<StudyResults>& studies,
                         const PageOptions& options) {
-  const std::string scripts = libraries(options.scripts);
-  Json data = {{"title", options.title},
-               {"verdicts", options.verdicts ? claims_json(*options.verdicts) : Json(nullptr)}};
-  data.update(page_tables(studies));
-  data.update(page_scenes(runs, choose_scenes(runs, options.pairs_in_3d)));
   const EmbeddedFiles& files = embedded_page();
   std::string own;
   for (const char* name : {"data.js", "zoom.js", "panels.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
     own += script_in_html(files.at(name));
-  return filled(files.at("report.html"), {{"title", text_in_html(options.title)},
-                                          {"style", files.at("report.css")},
-                                          {"libraries", scripts},
-                                          {"data", json_in_html(data)},
-                                          {"scripts", own}});
+  std::map<std::string, std::string> parts = {{"title", text_in_html(options.title)},
+                                              {"style", files.at("report.css")},
+                                              {"libraries", libraries(options.scripts)},
+                                              {"scripts", own}};
+  const std::vector<SceneChoice> scenes = choose_scenes(runs, options.pairs_in_3d);
+  Json data = {{"title", options.title},
+               {"verdicts", options.verdicts ? claims_json(*options.verdicts) : Json(nullptr)}};
+  data.update(page_tables(studies, sample_records(runs, scenes, options.most_records)));
+  std::size_t bytes = files.at("report.html").size() + json_in_html(data).size();
+  for (const auto& [name, text] : parts) bytes += text.size();
+  data.update(page_scenes(runs, scenes, options.most_bytes - std::min(options.most_bytes, bytes)));
+  parts["data"] = json_in_html(data);
+  return filled(files.at("report.html"), parts);
 }
 
 }  // namespace corral

@@ -132,6 +132,14 @@ class MeshShelf {
     return {known->second, &last_, box};
   }
   const Json& meshes() const { return meshes_; }
+  /// The text of the meshes from this one on.
+  std::size_t bytes_from(std::size_t first) const {
+    std::size_t bytes = 0;
+    for (std::size_t i = first; i < meshes_.size(); ++i) bytes += compact_json(meshes_[i]).size() + 1;
+    return bytes;
+  }
+  /// Takes the others away again; nothing may be put behind them.
+  void keep(std::size_t count) { meshes_.erase(meshes_.begin() + static_cast<std::ptrdiff_t>(count), meshes_.end()); }
 
  private:
   std::map<std::string, int> numbers_;
@@ -231,12 +239,14 @@ std::vector<SceneChoice> choose_scenes(const std::vector<StudyFolder>& runs, int
   return chosen;
 }
 
-Json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices) {
+Json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices,
+                 std::size_t most_bytes) {
   MeshShelf shelf;
   Json scenes = Json::array();
   Progress progress(static_cast<double>(choices.size()));
   for (const SceneChoice& choice : choices) {
     progress.begin("3D: " + choice.pair);
+    const std::size_t meshes = shelf.meshes().size();
     Json scene = {
         {"run", choice.run}, {"dataset", choice.dataset}, {"pair", choice.pair}, {"selection", choice.selection}};
     try {
@@ -244,7 +254,13 @@ Json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneCh
     } catch (const IoError& error) {
       scene["problem"] = error.what();
     }
-    scenes.push_back(scene);
+    const std::size_t bytes = compact_json(scene).size() + 1 + shelf.bytes_from(meshes);
+    if (bytes > most_bytes) {
+      shelf.keep(meshes);
+      break;
+    }
+    most_bytes -= bytes;
+    scenes.push_back(std::move(scene));
   }
   return {{"meshes", shelf.meshes()}, {"scenes", scenes}};
 }

@@ -26,6 +26,8 @@ std::vector<SceneChoice> choose_scenes(const std::vector<StudyFolder>& runs, int
 ///           target_points, residuals (floats, or null), truth, selected {method: bits},
 ///           poses {method: {stage: 12 numbers}}}, or {run, dataset, pair, selection, problem} for a file that cannot
 ///           be used
-nlohmann::ordered_json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices);
+/// As many of them, from the first on, as take at most so many bytes.
+nlohmann::ordered_json page_scenes(const std::vector<StudyFolder>& runs, const std::vector<SceneChoice>& choices,
+                                   std::size_t most_bytes);
 
 }  // namespace corral

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "apps/report/figure/method_style.h"
 #include "apps/runtime/json.h"
@@ -74,10 +76,13 @@ Json experiments_of(const StudyResults& study, int number) {
   for (const ExperimentInfo& experiment : run.experiments) {
     Json levels = Json::array(), bounds = Json::array();
     for (const StudyLevel& level : experiment.levels) levels.push_back(level.label);
-    for (const StudyRecord& record : run.records)
-      if (record.experiment == experiment.name && is_bound(record.method) &&
-          std::find(bounds.begin(), bounds.end(), record.method) == bounds.end())
-        bounds.push_back(record.method);
+    int failed = 0;
+    for (const StudyRecord& record : run.records) {
+      if (!(record.experiment == experiment.name)) continue;
+      failed += record.status.state == MethodState::Failed;
+      if (is_bound(record.method) && std::find(bounds.begin(), bounds.end(), record.method.str()) == bounds.end())
+        bounds.push_back(record.method.str());
+    }
     experiments.push_back({{"run", number},
                            {"name", experiment.name},
                            {"title", experiment.title},
@@ -90,6 +95,7 @@ Json experiments_of(const StudyResults& study, int number) {
                            {"bounds", bounds},
                            {"threshold_pr", rounded(experiment.threshold_pr)},
                            {"least_true_matches", experiment.least_true_matches},
+                           {"failed", failed},
                            {"means", means_of(study, experiment)}});
   }
   return experiments;
@@ -110,19 +116,21 @@ class Words {
   std::vector<std::string> words_;
 };
 
+bool is_left_out(PairRole role) { return is_excluded(role) || role == PairRole::Misfit; }
+
 void add_record(Json& columns, Words& words, int run, const StudyRecord& record, PairRole role) {
   columns["run"].push_back(run);
   const std::string status = to_text(record.status);
-  for (const auto& [name, word] : {std::pair<const char*, const std::string*>{"experiment", &record.experiment},
-                                   {"dataset", &record.dataset},
-                                   {"level", &record.level},
-                                   {"pair", &record.pair},
-                                   {"method", &record.method},
+  for (const auto& [name, word] : {std::pair<const char*, const std::string*>{"experiment", &record.experiment.str()},
+                                   {"dataset", &record.dataset.str()},
+                                   {"level", &record.level.str()},
+                                   {"pair", &record.pair.str()},
+                                   {"method", &record.method.str()},
                                    {"status", &status},
-                                   {"selection", &record.selection}})
+                                   {"selection", &record.selection.str()}})
     columns[name].push_back(words.number(*word));
   columns["repeat"].push_back(record.repeat);
-  columns["excluded"].push_back(is_excluded(role) || role == PairRole::Misfit ? 1 : 0);
+  columns["excluded"].push_back(is_left_out(role) ? 1 : 0);
   for (const Measure* measure : measures_with(kOnPage)) {
     const std::optional<double> number = measure->of(record);
     columns[measure->name].push_back(measure->stored.count && number ? Json(static_cast<int>(*number))
@@ -157,9 +165,36 @@ Json styles_of(const std::vector<StudyResults>& studies) {
   return styles;
 }
 
+/// By the name of the experiment.
+std::map<std::string, int> least_true_matches(const StudyFolder& run) {
+  std::map<std::string, int> least;
+  for (const ExperimentInfo& experiment : run.experiments) least[experiment.name] = experiment.least_true_matches;
+  return least;
+}
+
+/// Of all records.
+Json totals_of(const std::vector<StudyResults>& studies) {
+  std::size_t records = 0, failed = 0, pairs = 0, exclusions = 0;
+  for (const StudyResults& study : studies) {
+    std::map<std::string, int> least = least_true_matches(*study.run);
+    std::set<std::pair<std::string, std::string>> seen;
+    std::set<std::tuple<std::string, std::string, std::string>> excluded;
+    for (const StudyRecord& record : study.run->records) {
+      ++records;
+      failed += record.status.state == MethodState::Failed ? 1 : 0;
+      seen.emplace(record.dataset, record.pair);
+      if (is_left_out(role_of(record, least[record.experiment])))
+        excluded.emplace(record.experiment, record.level, record.pair);
+    }
+    pairs += seen.size();
+    exclusions += excluded.size();
+  }
+  return {{"records", records}, {"pairs", pairs}, {"exclusions", exclusions}, {"failed", failed}};
+}
+
 }  // namespace
 
-Json page_tables(const std::vector<StudyResults>& studies) {
+Json page_tables(const std::vector<StudyResults>& studies, const PageRecords& carried) {
   Json folders = Json::array(), experiments = Json::array(), columns = Json::object();
   Words words;
   for (std::size_t number = 0; number < studies.size(); ++number) {
@@ -168,14 +203,17 @@ Json page_tables(const std::vector<StudyResults>& studies) {
     folders.push_back({{"folder", name.empty() ? run.folder : name}, {"facts", facts_of(run)}});
     for (const Json& experiment : experiments_of(studies[number], static_cast<int>(number)))
       experiments.push_back(experiment);
-    std::map<std::string, int> least;
-    for (const ExperimentInfo& experiment : run.experiments) least[experiment.name] = experiment.least_true_matches;
-    for (const StudyRecord& record : run.records)
-      add_record(columns, words, static_cast<int>(number), record, role_of(record, least[record.experiment]));
+    std::map<std::string, int> least = least_true_matches(run);
+    for (const StudyRecord* record : carried[number])
+      add_record(columns, words, static_cast<int>(number), *record, role_of(*record, least[record->experiment]));
   }
-  return {{"runs", folders},           {"experiments", experiments},
-          {"measures", measures_of()}, {"styles", styles_of(studies)},
-          {"words", words.list()},     {"records", columns}};
+  return {{"runs", folders},
+          {"experiments", experiments},
+          {"measures", measures_of()},
+          {"styles", styles_of(studies)},
+          {"totals", totals_of(studies)},
+          {"words", words.list()},
+          {"records", columns}};
 }
 
 }  // namespace corral

@@ -38,6 +38,7 @@ const records = (() => {
     return record;
   });
 })();
+const isSampled = records.length < data.totals.records;
 const experimentOf = record => data.experiments.find(e => e.run === record.run && e.name === record.experiment);
 const experimentTitle = experiment => (experiment.figure ? `(${experiment.figure}) ` : '') + experiment.title;
 for (const record of records) {

@@ -159,13 +159,12 @@ const panels = (() => {
     if (perLevel.every(m => !isNumber(m.pairs))) return `Measured alone, on one thread.${gaps}`;
     const sum = (rows, name) => rows.reduce((total, row) => total + (row[name] || 0), 0);
     const pairs = perLevel.map(m => m.pairs), low = Math.min(...pairs), high = Math.max(...pairs);
-    const failed = records.filter(r => r.place === experiment && r.state === 'failed').length;
     const own = experiment.means.filter(m => experiment.methods.includes(m.method));
     return `${low === high ? low : `${low} to ${high}`} pairs a level; a match is right within ${
                experiment.attribute === 'threshold_pr' ? 'the threshold' : `${experiment.threshold_pr} pr`}; ` +
         `${sum(perLevel, 'excluded')} excluded (fewer than ${
                counted(experiment.least_true_matches, 'correct match', 'correct matches')}); ` +
-        `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(failed, 'failure')}.` + gaps;
+        `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(experiment.failed, 'failure')}.` + gaps;
   }
 
   function tableOf(experiment) {

@@ -81,7 +81,8 @@ const recordTable = (() => {
     page = Math.max(0, Math.min(pages - 1, page));
     byId('records-table').tBodies[0].replaceChildren(...shown.slice(page * onPage, (page + 1) * onPage).map(rowOf));
     byId('records-count').textContent =
-        `${counted(shown.length, 'row')} of ${records.length.toLocaleString('en')}: a pair, a level and a grouper each`;
+        `${counted(shown.length, 'row')} of ${records.length.toLocaleString('en')}: a pair, a level and a grouper each${
+            isSampled ? ` (a sample of ${data.totals.records.toLocaleString('en')})` : ''}`;
     byId('page-number').textContent = `page ${page + 1} of ${pages}`;
     byId('earlier').disabled = page === 0;
     byId('later').disabled = page === pages - 1;

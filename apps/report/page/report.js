@@ -23,16 +23,20 @@
   }
 
   function summarize() {
-    const pairs = unique(records.map(r => `${r.run}/${r.dataset}/${r.pair}`)).length;
-    const failed = records.filter(r => r.state === 'failed').length;
-    const excluded =
-        unique(records.filter(r => r.excluded).map(r => `${r.run}/${r.experiment}/${r.level}/${r.pair}`)).length;
+    const {pairs, exclusions, failed} = data.totals;
     byId('summary').textContent = [
       counted(data.runs.length, 'run'), counted(data.experiments.length, 'experiment'), counted(pairs, 'pair'),
-      counted(methods.length - bounds.length, 'grouper'), counted(records.length, 'record'),
-      counted(excluded, 'exclusion of a pair at a level', 'exclusions of a pair at a level'),
+      counted(methods.length - bounds.length, 'grouper'), counted(data.totals.records, 'record'),
+      counted(exclusions, 'exclusion of a pair at a level', 'exclusions of a pair at a level'),
       counted(failed, 'failed record'), `${counted(data.scenes.length, 'pair')} in 3D`
     ].join(' · ');
+    byId('sample-note').hidden = !isSampled;
+    const carried = unique(records.map(r => `${r.run}/${r.dataset}/${r.pair}`)).length;
+    byId('sample-note').textContent = `This page carries ${records.length.toLocaleString('en')} of ${
+        counted(data.totals.records, 'record')}, those of ${carried.toLocaleString('en')} of ${
+        counted(pairs, 'pair')}: the pairs in 3D; then, of every level in turn, a pair that failed or whose truth does ` +
+        'not fit, and one of the others, drawn at random. Panels, numbers, findings and the counts above are those of ' +
+        'all records, which are in records.csv of each study.';
   }
 
   function showFindings() {

@@ -135,6 +135,34 @@ TEST_F(Page, HoldsEveryRecord) {
   }
 }
 
+TEST_F(Page, ALargerStudyIsSampledAndCountedWhole) {
+  PageOptions options;
+  options.most_records = 6;  // of 10: two pairs with two groupers and two bounds each, and one that failed
+  const Json whole = data(), sampled = data_of(page(options));
+  EXPECT_EQ(whole["totals"], Json({{"records", 10}, {"pairs", 3}, {"exclusions", 0}, {"failed", 2}}));
+  EXPECT_EQ(whole["experiments"][0]["failed"], 2);
+  EXPECT_EQ(whole["records"]["pair"].size(), 10u);
+  EXPECT_EQ(sampled["records"]["pair"].size(), 4u) << "the first scene; no half of a pair";
+  EXPECT_EQ(sampled["totals"], whole["totals"]);
+  EXPECT_EQ(sampled["experiments"], whole["experiments"]);
+}
+
+TEST_F(Page, HasAsManyPairsInThreeDimensionsAsFit) {
+  const std::size_t with_both = page().size();
+  PageOptions options;
+  options.most_bytes = with_both + 1000;
+  EXPECT_EQ(data_of(page(options))["scenes"].size(), 2u);
+  options.most_bytes = with_both - 1000;
+  const std::string with_one = page(options);
+  EXPECT_LE(with_one.size(), options.most_bytes);
+  EXPECT_EQ(data_of(with_one)["scenes"].size(), 1u);
+  EXPECT_EQ(data_of(with_one)["meshes"].size(), 2u);
+  options.most_bytes = 1000;  // tables and records always come
+  EXPECT_EQ(data_of(page(options))["scenes"].size(), 0u);
+  EXPECT_EQ(data_of(page(options))["meshes"].size(), 0u);
+  EXPECT_EQ(data_of(page(options))["records"]["pair"].size(), 10u);
+}
+
 TEST_F(Page, MethodsLookAsInTheFigures) {
   const Json styles = data()["styles"];
   EXPECT_EQ(styles.size(), 4u);

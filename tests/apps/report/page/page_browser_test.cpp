@@ -56,6 +56,9 @@ struct Desk {
     options.verdicts->front().text = "<b>RANSAC</b> leads";
     const std::vector<StudyFolder> runs = {run};
     write_file(folder / "page.html", report_page(runs, results_of(runs), options));
+    options.most_records = 13;  // of 23: the pairs at 0.1 and the one that failed
+    options.pairs_in_3d = 1;
+    write_file(folder / "sampled.html", report_page(runs, results_of(runs), options));
   }
 
   ScratchFolder folder;
@@ -249,6 +252,24 @@ TEST_F(PageInBrowser, TheTableSortsFiltersAndOpensPairs) {
   choose("filter-outcome", "failed");
   choose("filter-method", "");
   EXPECT_EQ(column(2), Json({"broken", "broken", "broken"}));
+}
+
+TEST_F(PageInBrowser, OfALargeStudyItSaysThatItShowsASample) {
+  EXPECT_EQ(js("[isSampled, byId('sample-note').hidden]"), Json({false, true}));
+  const Json counts =
+      js("[byId('summary').textContent, [...document.querySelectorAll('.note')].map(n => n.textContent)]");
+  browser_->open(desk_->folder / "sampled.html");
+  EXPECT_EQ(js("byId('sample-note').hidden"), false);
+  EXPECT_THAT(js("byId('sample-note').textContent").get<std::string>(),
+              AllOf(HasSubstr("carries 13 of 23 records"), HasSubstr("those of 3 of 5 pairs"), HasSubstr("at random")));
+  EXPECT_THAT(js("byId('records-count').textContent").get<std::string>(),
+              AllOf(HasSubstr("13 rows of 13"), HasSubstr("(a sample of 23)")));
+  const Json sampled =
+      js("[byId('summary').textContent, [...document.querySelectorAll('.note')].map(n => n.textContent)]");
+  EXPECT_EQ(sampled[1], counts[1]) << "what stands under the titles is counted over all records";
+  EXPECT_THAT(sampled[0].get<std::string>(), AllOf(HasSubstr("23 records"), HasSubstr("1 pair in 3D")));
+  js("document.querySelector('#records-table td button').click()");
+  js("panels.charts[0].options.onClick({}, [{datasetIndex: 1, index: 2}])");  // a point none of whose pairs is there
 }
 
 TEST_F(PageInBrowser, APointLeadsToItsPairInThreeDimensions) {
