@@ -95,8 +95,8 @@ Layout lay_out(const StudyFolder& run) {
     const LevelFinder::Place* const place = levels.of(record);
     if (!place)
       throw IoError((std::filesystem::path(run.folder) / "records.csv").string(), "",
-                    "experiment " + corral::quoted(record.experiment.str()) + " at level " + corral::quoted(record.level.str()) +
-                        " is not in manifest.json");
+                    "experiment " + corral::quoted(record.experiment.str()) + " at level " +
+                        corral::quoted(record.level.str()) + " is not in manifest.json");
     const auto [experiment, level_index] = *place;
     LevelTable& level = layout.tables[experiment].levels[level_index];
     const std::size_t row = rows.row_of(level, record, level.pairs.size());
