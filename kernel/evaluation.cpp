@@ -80,7 +80,7 @@ std::optional<PointError> point_error(const RigidTransform& estimate, const Rigi
   if (points.rows() == 0) return std::nullopt;
   const Eigen::VectorXd distances = (estimate.apply(points) - truth.apply(points)).rowwise().norm() / resolution;
   const double count = static_cast<double>(distances.size());
-  return PointError{std::sqrt(distances.squaredNorm() / count), distances.sum() / count};
+  return PointError{std::sqrt(distances.squaredNorm() / count), distances.sum() / count, distances.maxCoeff()};
 }
 
 const std::vector<double>& success_thresholds_pr() {

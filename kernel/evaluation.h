@@ -51,6 +51,7 @@ double translation_error_pr(const RigidTransform& estimate, const RigidTransform
 struct PointError {
   double rmse_pr = 0;  ///< root mean square over the points
   double mean_pr = 0;  ///< mean over the points (what published "RMSE" curves of the field show)
+  double max_pr = 0;   ///< over the points
 };
 
 /// Over N points in the source (rows); absent if there are none.

@@ -16,11 +16,18 @@ namespace {
 /// The errors of an estimate against one of the poses that are right.
 PoseErrors errors_against(const RigidTransform& right, const RigidTransform& estimate, const PairTruth& truth,
                           double resolution) {
-  PoseErrors errors{rotation_error_deg(estimate, right), translation_error_pr(estimate, right, resolution),
-                    point_error(estimate, right, truth.overlap, resolution), std::nullopt};
+  PoseErrors errors{rotation_error_deg(estimate, right),
+                    translation_error_pr(estimate, right, resolution),
+                    point_error(estimate, right, truth.overlap, resolution),
+                    {},
+                    {}};
   if (errors.points && truth.rmse_points.rows() > 0)
     errors.points->rmse_pr = point_error(estimate, right, truth.rmse_points, resolution)->rmse_pr;
-  if (truth.diameter > 0) errors.add_share = point_error(estimate, right, truth.vertices, truth.diameter)->mean_pr;
+  if (truth.diameter > 0) {
+    const PointError whole = *point_error(estimate, right, truth.vertices, truth.diameter);
+    errors.add_share = whole.mean_pr;
+    errors.mssd_share = whole.max_pr;
+  }
   return errors;
 }
 
@@ -65,6 +72,7 @@ PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, d
   PoseErrors nearest = errors_against(truth.target_from_source, estimate, truth, resolution);
   for (const RigidTransform& equal : truth.equals) {
     PoseErrors errors = errors_against(equal, estimate, truth, resolution);
+    if (errors.mssd_share) errors.mssd_share = nearest.mssd_share = std::min(*errors.mssd_share, *nearest.mssd_share);
     if (distance(errors) < distance(nearest)) nearest = std::move(errors);
   }
   return nearest;

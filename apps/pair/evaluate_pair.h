@@ -51,6 +51,7 @@ struct PoseErrors {
   double rotation_error_deg = 0, translation_error_pr = 0;
   std::optional<PointError> points;  ///< over the overlap
   std::optional<double> add_share;   ///< mean distance of all source vertices, in diameters of the source (ADD)
+  std::optional<double> mssd_share;  ///< the largest of these distances, over the poses that are right the least (MSSD)
 };
 /// Against the nearest of the poses that are right: that with the least mean error, or without points the least rotation error.
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);

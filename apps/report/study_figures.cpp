@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "apps/pair/evaluate_pair.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
@@ -131,9 +132,35 @@ std::map<std::string, std::vector<const StudyRecord*>> counted_records(const Stu
   std::map<std::string, std::vector<const StudyRecord*>> counted;
   for (const StudyRecord& record : run.records)
     if (record.experiment == info.name && record.dataset == info.dataset &&
-        role_of(record, info.least_true_matches) == PairRole::Judged)
+        role_of(record, info.least_true_matches) == PairRole::Judged &&
+        record.status.state != MethodState::NotApplicable)
       counted[record.method].push_back(&record);
   return counted;
+}
+
+/// The share of pairs that a grouper registers within a time, by its refined pose and the time of the grouping alone.
+void add_budgets(const ExperimentInfo& info, const std::map<std::string, std::vector<const StudyRecord*>>& records,
+                 StudyFigures& figures) {
+  Panel panel = empty_panel(info, "success-in-time");
+  panel.x_axis = "time of the grouping at most";
+  panel.y_axis = "aligned within 5 pr";
+  panel.note = "Over the pairs of all levels, wall time of the grouping alone in one thread.";
+  panel.levels = {"1 ms", "10 ms", "100 ms", "1 s"};
+  for (const std::string& method : info.methods) {
+    const auto found = records.find(method);
+    if (found == records.end()) continue;
+    PanelSeries series{method, {}};
+    for (const double budget_ms : {1, 10, 100, 1000}) {
+      const auto registers = [&](const StudyRecord* record) {
+        const auto& error = record->refined.mean_error_pr;
+        return record->time_ms && *record->time_ms <= budget_ms && error && *error <= kSuccessPr;
+      };
+      const auto count = std::count_if(found->second.begin(), found->second.end(), registers);
+      series.values.push_back({static_cast<double>(count) / static_cast<double>(found->second.size()), {}, {}});
+    }
+    panel.series.push_back(series);
+  }
+  if (!panel.series.empty()) figures.panels.push_back({panel.name, title_of(info), {panel}});
 }
 
 void add_distributions(const StudyFolder& run, const ExperimentInfo& info, StudyFigures& figures) {
@@ -156,6 +183,7 @@ void add_distributions(const StudyFolder& run, const ExperimentInfo& info, Study
     for (const double share : success_curve(errors, success_thresholds_pr())) series.values.push_back({share, {}, {}});
     curve.series.push_back(series);
   }
+  add_budgets(info, records, figures);
   const auto has_pose = [](const Box& box) { return box.without < box.pairs; };
   if (std::none_of(boxes.boxes.begin(), boxes.boxes.end(), has_pose)) return;
   figures.panels.push_back({curve.name, title_of(info), {curve}});

@@ -231,11 +231,13 @@ bool is_within(const StudyLevel& level, double low, double high) {
   return level.low >= low - kRounding && level.high <= high + kRounding;
 }
 
-double median_of(RowNumbers values) {
+double quantile_of_present(RowNumbers values, double share) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }),
                values.end());
-  return quantile_of(std::move(values), 0.5);
+  return quantile_of(std::move(values), share);
 }
+
+double median_of(RowNumbers values) { return quantile_of_present(std::move(values), 0.5); }
 
 std::vector<RowNumbers> selection_agreement(const StudyFolder& run, const ExperimentTable& table,
                                             const std::vector<std::string>& methods) {

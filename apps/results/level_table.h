@@ -49,8 +49,9 @@ std::vector<ExperimentTable> experiment_tables(const StudyFolder& run);
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.
 double mean_of(const RowNumbers& column);
 double mean_of(const RowNumbers& column, const std::vector<int>& rows);
-int present_in(const RowNumbers& column);  ///< how many numbers there are
-double median_of(RowNumbers values);       ///< likewise
+int present_in(const RowNumbers& column);                     ///< how many numbers there are
+double median_of(RowNumbers values);                          ///< likewise
+double quantile_of_present(RowNumbers values, double share);  ///< likewise
 
 /// Whether a level lies in low .. high, ends included; levels are decimal numbers, so ends may be off by their rounding.
 bool is_within(const StudyLevel& level, double low, double high);

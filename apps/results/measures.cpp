@@ -19,6 +19,7 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr auto Larger = Better::Larger, Smaller = Better::Smaller;
 constexpr auto Zero = Absent::Zero, LeftOut = Absent::LeftOut, Infinite = Absent::Infinite;
 constexpr auto None = Average::None, Mean = Average::Mean, Median = Average::Median, Pooled = Average::Pooled;
+constexpr auto Quantile75 = Average::Quantile75, Quantile95 = Average::Quantile95;
 
 Stored count(std::optional<int> R::*member) { return {member, nullptr, nullptr, nullptr}; }
 Stored number(Number R::*member) { return {nullptr, member, nullptr, nullptr}; }
@@ -34,6 +35,31 @@ Number success(const R& record) {
   const PoseScores& scores = record.*Pose;
   if (!scores.rotation_error_deg && !scores.mean_error_pr) return std::nullopt;
   return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
+}
+
+/// A criterion of the field, on the refined pose: largest rotation error (degrees) and translation error (metres).
+template <int Rotation, int Centimetres>
+Number within(const R& record) {
+  const PoseScores& pose = record.refined;
+  if (!record.metres_per_pr || !pose.rotation_error_deg || !pose.translation_error_pr) return std::nullopt;
+  const double metres = *pose.translation_error_pr * *record.metres_per_pr;
+  return *pose.rotation_error_deg <= Rotation && metres <= Centimetres / 100.0 ? 1 : 0;
+}
+
+Number rmse_within_20cm(const R& record) {
+  if (!record.metres_per_pr || !record.refined.rmse_pr) return std::nullopt;
+  return *record.refined.rmse_pr * *record.metres_per_pr <= 0.2 ? 1 : 0;
+}
+
+/// Recognised by ADD: below a tenth of the diameter.
+Number recognised(const R& record) {
+  if (!record.refined.add_share) return std::nullopt;
+  return *record.refined.add_share < kSuccessAddShare ? 1 : 0;
+}
+
+template <Number PoseScores::*Score>
+Number of_refined(const R& record) {
+  return record.refined.*Score;
 }
 
 Number area(const R& record) {
@@ -57,6 +83,7 @@ const std::vector<Measure> kOfSelections = {
     {"precision_nonempty", "precision of non-empty selections", "", 3, 1, Larger, {}, [](const R& r) { return r.precision; }, LeftOut, Mean},
     {"inlier_ratio",       "inlier ratio",  "", 3, 1, Larger, {}, inlier_ratio, LeftOut, Mean, kOfPair},
     {"frame_share",        "frame share",   "", 3, 1, Larger, number(&R::frame_share), nullptr, LeftOut, Mean, kOfPair},
+    {"metres_per_pr",      "metres per pr", "m", 4, kAny, Larger, number(&R::metres_per_pr), nullptr, LeftOut, None, kOfPair},
 };
 const std::vector<Measure> kOfCalls = {
     {"time_ms",             "time",            "ms", 2, kAny, Smaller, number(&R::time_ms), nullptr, LeftOut, None, kOnPage | kEveryPair},
@@ -65,6 +92,17 @@ const std::vector<Measure> kOfCalls = {
      kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},
     {"dense_success_5pr",   "dense success",   "", 3, 1, Larger, {}, success<&R::dense>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, dense"},
+    {"success_3dmatch",     "3DMatch: 15 deg, 30 cm", "", 3, 1, Larger, {}, within<15, 30>,   Zero, Mean, kYesOrNo | kIfTried},
+    {"success_3dmatch_rmse", "3DMatch: RMSE 20 cm",   "", 3, 1, Larger, {}, rmse_within_20cm, Zero, Mean, kYesOrNo | kIfTried},
+    {"success_kitti",       "KITTI: 5 deg, 60 cm",    "", 3, 1, Larger, {}, within<5, 60>,    Zero, Mean, kYesOrNo | kIfTried},
+    {"success_kitti_2m",    "KITTI: 5 deg, 2 m",      "", 3, 1, Larger, {}, within<5, 200>,   Zero, Mean, kYesOrNo | kIfTried},
+    {"success_add",         "ADD below 0.1",          "", 3, 1, Larger, {}, recognised,       Zero, Mean, kYesOrNo | kIfTried},
+    {"refined_rotation_error_deg_q75",   "rotation error, 75 %",    "deg", 2, kAny, Smaller, {}, of_refined<&PoseScores::rotation_error_deg>,   Infinite, Quantile75},
+    {"refined_rotation_error_deg_q95",   "rotation error, 95 %",    "deg", 2, kAny, Smaller, {}, of_refined<&PoseScores::rotation_error_deg>,   Infinite, Quantile95},
+    {"refined_translation_error_pr_q75", "translation error, 75 %", "pr",  2, kAny, Smaller, {}, of_refined<&PoseScores::translation_error_pr>, Infinite, Quantile75},
+    {"refined_translation_error_pr_q95", "translation error, 95 %", "pr",  2, kAny, Smaller, {}, of_refined<&PoseScores::translation_error_pr>, Infinite, Quantile95},
+    {"refined_mean_error_pr_q75",        "mean error, 75 %",        "pr",  2, kAny, Smaller, {}, of_refined<&PoseScores::mean_error_pr>,        Infinite, Quantile75},
+    {"refined_mean_error_pr_q95",        "mean error, 95 %",        "pr",  2, kAny, Smaller, {}, of_refined<&PoseScores::mean_error_pr>,        Infinite, Quantile95},
 };
 
 const std::vector<PoseMeasure> kOfPoses = {
@@ -73,6 +111,7 @@ const std::vector<PoseMeasure> kOfPoses = {
     {"mean_error_pr",        "mean error",        "pr",        &PoseScores::mean_error_pr,        true,  true},
     {"rmse_pr",              "RMSE",              "pr",        &PoseScores::rmse_pr,              false, false},
     {"add_share",            "ADD",               "diameters", &PoseScores::add_share,            false, false},
+    {"mssd_share",           "MSSD",              "diameters", &PoseScores::mssd_share,           false, false},
 };
 // clang-format on
 

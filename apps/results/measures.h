@@ -15,7 +15,7 @@ namespace corral {
 enum class Absent { Zero, LeftOut, Infinite };
 
 /// What of the pairs of a level stands in summary.csv. Pooled: the sum of one measure over the sum of another.
-enum class Average { None, Mean, Median, Pooled };
+enum class Average { None, Mean, Median, Quantile75, Quantile95, Pooled };
 
 enum class Better { Larger, Smaller };
 

@@ -16,6 +16,7 @@ struct PoseScores {
   std::optional<double> mean_error_pr;  ///< mean distance over the overlap, as in success curves
   std::optional<double> rmse_pr;        ///< root mean square of the same
   std::optional<double> add_share;      ///< mean distance of all source vertices, in diameters of the source
+  std::optional<double> mssd_share;     ///< the largest of these distances
 };
 
 /// A row of records.csv: one grouper on one pair at one level of one experiment. "oracle" (all correct matches) and
@@ -29,9 +30,10 @@ struct StudyRecord {
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
-  PoseScores initial, refined, dense;           ///< of the fit to the selection, the refined and the dense pose
-  std::optional<double> time_ms;                ///< of the grouping alone
-  SharedText selection;                         ///< file of selections in the study folder; empty if there is none
+  std::optional<double> metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
+  PoseScores initial, refined, dense;   ///< of the fit to the selection, the refined and the dense pose
+  std::optional<double> time_ms;        ///< of the grouping alone
+  SharedText selection;                 ///< file of selections in the study folder; empty if there is none
 };
 
 /// The names of the columns, in order.

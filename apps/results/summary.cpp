@@ -37,6 +37,8 @@ double average(const LevelTable& level, const std::string& method, const Measure
   if (measure.average == Average::Pooled) return pooled(level, method, measure);
   const RowNumbers& column = *level.column(measure, method);
   if (measure.average == Average::Median) return median_of(column);
+  if (measure.average == Average::Quantile75) return quantile_of_present(column, 0.75);
+  if (measure.average == Average::Quantile95) return quantile_of_present(column, 0.95);
   return measure.has(kOfPair) ? judged_mean(level, column) : mean_of(column);
 }
 

@@ -18,6 +18,8 @@ StudyRecord common_part(const WorkList& list, const StudySample& sample, const U
   record.pair = list.units[static_cast<std::size_t>(sample.unit)].pair.name;
   record.value = sample.value;
   if (result.failure.empty()) record.matches = result.matches;
+  if (result.failure.empty() && list.units[static_cast<std::size_t>(sample.unit)].is_in_metres)
+    record.metres_per_pr = result.resolution;
   return record;
 }
 

@@ -68,8 +68,9 @@ std::string one_line(std::string text) {
 
 PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   if (!errors) return {};
-  PoseScores scores{errors->rotation_error_deg, errors->translation_error_pr, std::nullopt, std::nullopt,
-                    errors->add_share};
+  PoseScores scores{
+      errors->rotation_error_deg, errors->translation_error_pr, std::nullopt, std::nullopt, errors->add_share,
+      errors->mssd_share};
   if (errors->points) scores.mean_error_pr = errors->points->mean_pr, scores.rmse_pr = errors->points->rmse_pr;
   return scores;
 }

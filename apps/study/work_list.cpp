@@ -196,7 +196,7 @@ class Collector {
     sample.unit = place->second;
     if (is_new) {
       DatasetPair files = dataset.with_paths(dataset.pairs[static_cast<std::size_t>(pair)]);
-      list_.units.push_back({dataset.name, files, matching, {}, {}, false, false, false, {}});
+      list_.units.push_back({dataset.name, files, matching, {}, {}, false, dataset.units == "m", false, false, {}});
     }
     WorkUnit& unit = list_.units[static_cast<std::size_t>(sample.unit)];
     unit.dense = unit.dense || experiment.dense;

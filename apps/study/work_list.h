@@ -31,6 +31,7 @@ struct WorkUnit {
   std::vector<GroupingTask> tasks;    ///< each once
   std::vector<double> thresholds_pr;  ///< at which the selections are scored, ascending
   bool dense = false;
+  bool is_in_metres = false;                           ///< the data set says so
   bool shares_source = false, shares_target = false;   ///< another unit describes that mesh in the same way
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
 };
