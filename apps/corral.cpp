@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
   corral::add_evaluate(app, action);
   corral::add_plan(app, action);
   corral::add_merge(app, action);
+  corral::add_submit(app, action);
   corral::add_dataset(app, action);
   corral::add_compare(app, action);
   corral::add_claims(app, action);

@@ -32,6 +32,7 @@ void add_triangulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_submit(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);

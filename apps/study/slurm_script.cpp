@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "apps/study/slurm_script.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace corral {
+namespace {
+
+std::string shell_words(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  return line;
+}
+
+std::string option(const std::string& name, const std::string& value) {
+  return value.empty() ? "" : "#SBATCH --" + name + "=" + value + "\n";
+}
+
+/// What both jobs have. sbatch has rules of its own for paths in such lines: the one here is a bare name, in the folder that
+/// sbatch is called in. What a job prints is appended, as one that is requeued prints twice.
+std::string head(const SlurmJobs& jobs, const std::string& name, const std::string& output) {
+  return "#!/bin/sh\n" + option("job-name", name) + option("partition", jobs.partition) +
+         option("account", jobs.account) + option("output", output) + option("open-mode", "append") +
+         "#SBATCH --requeue\n#SBATCH --ntasks=1\n";
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& text) {
+  constexpr auto kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=,:+";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char letter : text) word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return word + "'";
+}
+
+std::string time_limit(const std::vector<ShardPlan>& plan, int processors) {
+  double longest = 0;
+  for (const ShardPlan& shard : plan) longest = std::max(longest, shard.seconds);
+  const long minutes = static_cast<long>(std::ceil(10 + 3 * longest / processors / 60));
+  return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60) + ":00";
+}
+
+std::string memory_limit(const std::vector<ShardPlan>& plan, int processors) {
+  double largest = 0;
+  for (const ShardPlan& shard : plan) largest = std::max(largest, shard.peak_bytes);
+  return std::to_string(static_cast<long>(std::ceil(256 + 2 * largest * processors / 1e6))) + "M";
+}
+
+std::string shards_script(const SlurmJobs& jobs) {
+  const std::string count = std::to_string(jobs.shards);
+  // B: the signal goes to the process of the script, which is the program itself.
+  return head(jobs, "corral", "shard-%a.log") +
+         option("array", "1-" + count + (jobs.at_once > 0 ? "%" + std::to_string(jobs.at_once) : "")) +
+         option("cpus-per-task", std::to_string(jobs.processors)) + option("time", jobs.time) +
+         option("mem", jobs.memory) + option("signal", "B:TERM@60") + "exec " + shell_words(jobs.evaluate) +
+         " --shard \"$SLURM_ARRAY_TASK_ID/" + count + "\"\n";
+}
+
+std::string merge_script(const SlurmJobs& jobs) {
+  // Twice what the merge of 100,000 pairs may take.
+  return head(jobs, "corral-merge", "merge.log") + option("time", "10") + option("mem", "4G") + "exec " +
+         shell_words(jobs.merge) + "\n";
+}
+
+std::string submission(const SlurmJobs& jobs) {
+  // The number of a job may be followed by ";" and the name of its cluster.
+  return "cd " + shell_word(jobs.folder) +
+         " &&\n"
+         "  shards=$(sbatch --parsable shards.sbatch) && echo \"$shards\" &&\n"
+         "  sbatch --parsable --dependency=\"afterany:${shards%%;*}\" merge.sbatch\n";
+}
+
+}  // namespace corral

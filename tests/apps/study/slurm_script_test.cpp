@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "apps/study/slurm_script.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/io/scratch.h"
+
+namespace corral {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::put_text;
+using testing::ScratchFolder;
+
+/// Words that a shell would take apart, expand or drop.
+const std::vector<std::string> kHardWords = {"a b", "it's", "\"", "$HOME",      "`ls`",    "\\", "",         "*",
+                                             "~",   "-n",   "#x", "two\nlines", "a;b&c|d", "!1", "\xC3\xA4", "'"};
+
+/// What a shell prints that runs a script.
+std::string printed_by(const std::string& script, const std::string& variables = "") {
+  const ScratchFolder folder;
+  put_text(folder / "script", script);
+  EXPECT_EQ(std::system((variables + " sh '" + folder / "script" + "' > '" + folder / "out" + "'").c_str()), 0);
+  return testing::text_of(folder / "out");
+}
+
+/// A call that prints each of its words in brackets.
+std::vector<std::string> printing(const std::vector<std::string>& words) {
+  std::vector<std::string> call = {"printf", "[%s]"};
+  call.insert(call.end(), words.begin(), words.end());
+  return call;
+}
+
+std::string in_brackets(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += "[" + word + "]";
+  return text;
+}
+
+TEST(SlurmScript, AShellGetsEveryWordAsItIs) {
+  SlurmJobs jobs;
+  jobs.evaluate = jobs.merge = printing(kHardWords);
+  jobs.shards = 7;
+  EXPECT_EQ(printed_by(shards_script(jobs), "SLURM_ARRAY_TASK_ID=3"), in_brackets(kHardWords) + "[--shard][3/7]");
+  EXPECT_EQ(printed_by(merge_script(jobs)), in_brackets(kHardWords));
+  EXPECT_EQ(shell_word("/data/b3r_1.5:x=+,"), "/data/b3r_1.5:x=+,") << "is read more easily";
+}
+
+TEST(SlurmScript, AsksForWhatIsAskedFor) {
+  SlurmJobs jobs;
+  jobs.evaluate = {"/bin/corral", "evaluate", "noise"};
+  jobs.merge = {"/bin/corral", "merge", "/s"};
+  jobs.shards = 50;
+  jobs.time = "90";
+  jobs.memory = "2G";
+  EXPECT_EQ(shards_script(jobs),
+            "#!/bin/sh\n"
+            "#SBATCH --job-name=corral\n"
+            "#SBATCH --output=shard-%a.log\n"
+            "#SBATCH --open-mode=append\n"
+            "#SBATCH --requeue\n"
+            "#SBATCH --ntasks=1\n"
+            "#SBATCH --array=1-50\n"
+            "#SBATCH --cpus-per-task=1\n"
+            "#SBATCH --time=90\n"
+            "#SBATCH --mem=2G\n"
+            "#SBATCH --signal=B:TERM@60\n"
+            "exec /bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\"\n");
+  jobs.at_once = 20;
+  jobs.processors = 4;
+  jobs.partition = "short";
+  jobs.account = "physics";
+  EXPECT_THAT(shards_script(jobs), AllOf(HasSubstr("--array=1-50%20\n"), HasSubstr("--cpus-per-task=4\n"),
+                                         HasSubstr("--partition=short\n"), HasSubstr("--account=physics\n")));
+  EXPECT_THAT(merge_script(jobs), AllOf(HasSubstr("--partition=short\n"), HasSubstr("--account=physics\n"),
+                                        HasSubstr("exec /bin/corral merge /s\n"), Not(HasSubstr("array"))));
+}
+
+TEST(SlurmScript, SubmitsFromTheFolderOfTheScriptsAndMergesBehindTheArray) {
+  const ScratchFolder scratch;
+  SlurmJobs jobs;
+  jobs.folder = scratch / "it's a 100% folder";
+  std::filesystem::create_directories(jobs.folder);
+  const std::string sbatch =
+      put_text(scratch / "sbatch", "#!/bin/sh\necho \"$PWD:$*\" >> ../calls\necho '17;cluster'\n");
+  std::filesystem::permissions(sbatch, std::filesystem::perms::owner_all);
+  EXPECT_EQ(printed_by(submission(jobs), "PATH='" + scratch.path() + "':\"$PATH\""), "17;cluster\n17;cluster\n");
+  EXPECT_EQ(testing::text_of(scratch / "calls"), jobs.folder + ":--parsable shards.sbatch\n" + jobs.folder +
+                                                     ":--parsable --dependency=afterany:17 merge.sbatch\n");
+}
+
+TEST(SlurmScript, LimitsFollowTheLargestShards) {
+  const std::vector<ShardPlan> plan = {{3, 600, 50e6}, {1, 6000, 20e6}, {9, 60, 500e6}};
+  EXPECT_EQ(time_limit(plan, 1), "5:10:00");
+  EXPECT_EQ(time_limit(plan, 4), "1:25:00");
+  EXPECT_EQ(memory_limit(plan, 1), "1256M");
+  EXPECT_EQ(memory_limit(plan, 4), "4256M");
+  EXPECT_EQ(time_limit({{0, 0, 0}}, 1), "0:10:00");
+}
+
+}  // namespace
+}  // namespace corral
