@@ -30,17 +30,24 @@ Json rounded(const std::optional<double>& value) {
   return *parse_double(digits);
 }
 
-/// The manifest without parts that the page shows elsewhere or that are too long.
+/// The manifest without parts that the page shows elsewhere or that are too long. The order of its entries is that of the file;
+/// what is long is not read in order, which would compare each of its names with all before it.
 Json facts_of(const StudyFolder& run) {
   const std::string path = path_in(run, "manifest.json");
   try {
-    const Json manifest = Json::parse(read_file(path));
-    Json facts = Json::object();
+    const std::string text = read_file(path);
+    const nlohmann::json manifest = nlohmann::json::parse(text);
+    std::map<std::string, std::size_t> entries;  // of what is left out
     for (const auto& [name, value] : manifest.items())
-      if (name != "experiments" && name != "pairs")
-        facts[name] = compact_json(value).size() > 4000
-                          ? Json(std::to_string(value.size()) + " entries, see manifest.json")
-                          : value;
+      if (name == "experiments" || name == "pairs" ||
+          value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).size() > 4000)
+        entries[name] = value.size();
+    const auto is_kept = [&](int depth, Json::parse_event_t event, const Json& parsed) {
+      return depth > 1 || event != Json::parse_event_t::key || entries.count(parsed.get<std::string>()) == 0;
+    };
+    Json facts = Json::parse(text, is_kept);
+    for (const auto& [name, count] : entries)
+      if (name != "experiments" && name != "pairs") facts[name] = std::to_string(count) + " entries, see manifest.json";
     return facts;
   } catch (const Json::exception& error) {
     throw IoError(path, "", std::string("not the manifest of a study: ") + error.what());

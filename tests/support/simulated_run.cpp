@@ -127,7 +127,7 @@ StudyFolder simulated_study(std::uint64_t seed, int pairs) {
 }
 
 std::string manifest_text(const StudyFolder& run) {
-  nlohmann::ordered_json manifest = {{"experiments", nlohmann::json::array()}, {"pairs", nlohmann::json::object()}};
+  nlohmann::json manifest = {{"experiments", nlohmann::json::array()}, {"pairs", nlohmann::json::object()}};
   for (const ExperimentInfo& info : run.experiments) {
     nlohmann::json levels = nlohmann::json::array();
     for (const StudyLevel& level : info.levels)

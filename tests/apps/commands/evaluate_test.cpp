@@ -59,7 +59,7 @@ TEST_F(Evaluate, WritesARunThatReadsBack) {
     int correct = 0;
     for (const int row : selected) correct += selections.residual_pr[static_cast<std::size_t>(row)] <= 4;
     EXPECT_EQ(correct, *record.correct);
-    const std::string poses = record.selection.substr(0, record.selection.size() - 4) + ".poses.csv";
+    const std::string poses = record.selection.str().substr(0, record.selection.str().size() - 4) + ".poses.csv";
     EXPECT_FALSE(read_poses(place_ / "run/" + poses).empty());
   }
   const auto manifest = nlohmann::json::parse(place_.text("run/manifest.json"));
@@ -85,7 +85,7 @@ TEST_F(Evaluate, AgreesWithRun) {
   int compared = 0;
   for (const StudyRecord& record : read_study(place_ / "run").records)
     for (const auto& method : methods)
-      if (record.pair == "m2-0.25" && record.method == method["method"] && record.method != "ransac") {
+      if (record.pair == "m2-0.25" && method["method"] == record.method.str() && record.method != "ransac") {
         ++compared;
         EXPECT_EQ(*record.precision, method["precision"]);
         EXPECT_EQ(*record.refined.rmse_pr, method["rmse_pr"]) << method;
@@ -283,7 +283,7 @@ TEST_F(Evaluate, ThresholdsScoreTheSameSelections) {
   std::map<std::string, StudyRecord> last;
   int compared = 0;
   for (const StudyRecord& record : read_study(place_ / "run").records) {
-    const std::string key = record.pair + record.method + std::to_string(record.repeat);
+    const std::string key = record.pair.str() + record.method + std::to_string(record.repeat);
     const auto found = last.find(key);
     if (found != last.end() && record.method != "oracle") {
       ++compared;

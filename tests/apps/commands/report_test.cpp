@@ -180,11 +180,13 @@ TEST(Gallery, TakesThePairInTheMiddleOfEachDataSet) {
     record.true_matches = true_matches;
     record.selection = "selections/" + pair + ".csv";
     run.records.push_back(record);
-    run.pairs[dataset + "/" + pair] = {};
+    run.pairs[dataset + "/" + pair].source = "model.ply";
   };
   for (const auto& [pair, count] : {std::pair<const char*, int>{"a", 9}, {"b", 1}, {"c", 5}, {"d", 7}})
     add("b3r", pair, count);
   add("u3m", "a", 3);
+  add("u3m", "table", 2);
+  run.pairs["u3m/table"].source.clear();  // of matches alone: there is nothing to draw
   run.records.push_back(record_of("no selection", "ss", {}));
   const std::vector<StudyFolder> runs = {run};
   const auto names = [&](const std::vector<std::string>& asked) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "apps/results/study_folder.h"
+#include "kernel/evaluation.h"
 #include "tests/support/small_study.h"
 
 namespace corral {
@@ -176,7 +177,7 @@ TEST_F(TablesAlone, SeveralTruthsAreEquallyRight) {
     std::map<std::string, StudyRecord> found;
     for (const StudyRecord& record :
          read_study(place_ / (truths.substr(0, 1) + "run" + std::to_string(truths.size()))).records)
-      found[record.method] = record;
+      found[record.method.str()] = record;
     return found;
   };
   auto first = oracle_and_ransac("a.txt"), other = oracle_and_ransac("b.txt"), both = oracle_and_ransac("a.txt;b.txt");

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The criteria that the field states in degrees and metres, and quantiles of errors.
+#include <gtest/gtest.h>
+
+#include "apps/results/measures.h"
+#include "apps/results/summary.h"
+
+namespace corral {
+namespace {
+
+StudyRecord record_with(double rotation_deg, double translation_pr, double metres_per_pr) {
+  StudyRecord record;
+  record.experiment = "e", record.dataset = "d", record.level = "1", record.method = "gc";
+  record.status = {MethodState::Refined};
+  record.matches = 10, record.true_matches = 5, record.selected = 4, record.correct = 3;
+  record.refined.rotation_error_deg = rotation_deg;
+  record.refined.translation_error_pr = translation_pr;
+  record.refined.rmse_pr = translation_pr;
+  record.metres_per_pr = metres_per_pr;
+  return record;
+}
+
+TEST(FieldCriteria, AreInDegreesAndMetresInclusive) {
+  const auto value = [](const char* name, const StudyRecord& record) { return *measure(name).of(record); };
+  // 0.3 m are 3 pr of 0.1 m
+  EXPECT_EQ(value("success_3dmatch", record_with(15, 3, 0.1)), 1);
+  EXPECT_EQ(value("success_3dmatch", record_with(15.001, 3, 0.1)), 0);
+  EXPECT_EQ(value("success_3dmatch", record_with(15, 3.001, 0.1)), 0);
+  EXPECT_EQ(value("success_3dmatch_rmse", record_with(90, 2, 0.1)), 1);
+  EXPECT_EQ(value("success_3dmatch_rmse", record_with(0, 2.001, 0.1)), 0);
+  EXPECT_EQ(value("success_kitti", record_with(5, 2, 0.3)), 1);
+  EXPECT_EQ(value("success_kitti", record_with(5, 2.001, 0.3)), 0);
+  EXPECT_EQ(value("success_kitti_2m", record_with(5, 4, 0.5)), 1);
+  EXPECT_EQ(value("success_kitti_2m", record_with(5.001, 4, 0.5)), 0);
+}
+
+TEST(FieldCriteria, AreAbsentWithoutMetresOrAPose) {
+  StudyRecord record = record_with(1, 1, 0.1);
+  record.metres_per_pr.reset();
+  for (const char* name : {"success_3dmatch", "success_3dmatch_rmse", "success_kitti", "success_kitti_2m"})
+    EXPECT_FALSE(measure(name).of(record)) << name;
+  record = record_with(1, 1, 0.1);
+  record.refined = {};
+  for (const char* name : {"success_3dmatch", "success_kitti", "success_add"})
+    EXPECT_EQ(counted_number(measure(name), record, PairRole::Judged), 0) << "no pose is a failure: " << name;
+}
+
+TEST(FieldCriteria, StandInTheSummaryWithQuantilesOfErrors) {
+  ExperimentInfo info;
+  info.name = "e", info.dataset = "d", info.levels = {{"1", 1, 1}}, info.methods = {"gc"};
+  StudyFolder run;
+  run.experiments = {info};
+  for (int i = 0; i < 21; ++i) {  // errors of 0 .. 20 degrees and as many pr
+    run.records.push_back(record_with(i, i, 0.1));
+    run.records.back().pair = "p" + std::to_string(i);
+    run.records.back().refined.mean_error_pr = i;
+  }
+  const SummaryRow row = summarize(experiment_tables(run)).at(0);
+  EXPECT_EQ(row.of("refined_rotation_error_deg").value, 10);
+  EXPECT_EQ(row.of("refined_rotation_error_deg_q75").value, 15);
+  EXPECT_EQ(row.of("refined_translation_error_pr_q95").value, 19);
+  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch").value, 4.0 / 21);   // up to 3 pr
+  EXPECT_DOUBLE_EQ(*row.of("success_kitti_2m").value, 6.0 / 21);  // up to 5 degrees
+  run.records[0].refined = {};                                    // no pose: the largest error there is
+  EXPECT_EQ(summarize(experiment_tables(run)).at(0).of("refined_mean_error_pr_q75").value, 16);
+}
+
+}  // namespace
+}  // namespace corral
