@@ -112,7 +112,7 @@ class MeshShelf {
   };
 
   Place put(const std::string& path) {
-    if (path != last_path_) {
+    if (path.empty() || path != last_path_) {
       last_path_.clear();
       last_ = read_mesh(path);
       if (last_.vertices.rows() == 0) throw IoError(path, "", "no vertices, expected a surface");
@@ -165,6 +165,8 @@ Json scene_of(const StudyFolder& run, const SceneChoice& choice, MeshShelf& shel
   const PairSelections selections = read_selections(path);
   const auto pair = run.pairs.find(choice.dataset + "/" + choice.pair);
   if (pair == run.pairs.end()) throw IoError(run.folder, "manifest.json", "does not know the pair " + choice.pair);
+  if (selections.source_keypoints.size() != selections.matches)
+    throw IoError(path, "", "names no vertices, expected those of a pair with surfaces");
   Json scene;
   for (const bool is_source : {true, false}) {  // one full mesh at a time
     const MeshShelf::Place place = shelf.put(is_source ? pair->second.source : pair->second.target);
@@ -197,6 +199,8 @@ std::vector<SceneChoice> scenes_by_f1(const StudyFolder& run, int number, const 
   std::map<std::tuple<std::string, std::string, std::string>, Tally> tallies;
   for (const StudyRecord& record : run.records) {
     if (record.experiment != experiment.name || record.level != level || record.selection.empty()) continue;
+    const auto pair = run.pairs.find(record.dataset + "/" + record.pair);
+    if (pair != run.pairs.end() && !pair->second.has_surfaces()) continue;  // of a table alone there is nothing to show
     Tally& tally = tallies[{record.dataset, record.pair, record.selection}];
     if (is_bound(record.method) || !record.f1) continue;
     tally.sum += *record.f1;

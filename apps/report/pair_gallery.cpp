@@ -25,7 +25,7 @@ std::map<std::string, GalleryPair> pairs_of(const std::vector<StudyFolder>& runs
     for (const StudyRecord& record : run.records) {
       const GalleryPair pair{&run, &record};
       const auto found = run.pairs.find(pair.name());
-      if (!record.selection.empty() && found != run.pairs.end() && !found->second.source.empty())
+      if (!record.selection.empty() && found != run.pairs.end() && found->second.has_surfaces())
         pairs.emplace(pair.name(), pair);
     }
   return pairs;

@@ -38,6 +38,8 @@ struct StudyPair {
   std::string source, target, truth;                             ///< files; the surfaces or the truth may be empty
   double resolution = 0;                                         ///< mesh units per pr that the pair was judged with
   std::optional<int> source_points = {}, source_keypoints = {};  ///< of the source's surface, where the run says it
+
+  bool has_surfaces() const { return !source.empty(); }
 };
 
 /// A folder that `corral evaluate` made: manifest.json, records.csv, summary.csv, selections/.

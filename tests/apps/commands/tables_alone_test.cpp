@@ -114,6 +114,13 @@ TEST_F(TablesAlone, WhatNeedsAColumnDoesNotApplyToATableWithoutIt) {
   }
 }
 
+TEST_F(TablesAlone, OfCoordinatesAloneHaveAReportToo) {
+  ASSERT_EQ(evaluate("bare", "-o run").status, 0);
+  const Outcome outcome = place_.corral("report run -o report");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(place_.text("report/data/small-b3r-success-in-time.csv"), HasSubstr("1 s,"));
+}
+
 TEST_F(TablesAlone, AreBinnedByTheirShareOfCorrectMatches) {
   place_.put("small.toml", replaced(replaced(kSmallExperiment, "noise_pr", "inlier_ratio"),
                                     "levels = [0.05, 0.25, 0.45]", "bins = [[0, 20], [20, 50], [50, 100]]"));

@@ -205,7 +205,7 @@ TEST(MethodRecord, TheOutcomeTellsTheGrouperFromTheOptimiser) {
   EXPECT_EQ(record.outcome(), "") << "no truth";
   record.score = GroupingScore();
   EXPECT_EQ(record.outcome(), "lost");
-  const PoseErrors near{0, 0, PointError{1, 1}, std::nullopt}, far{0, 0, PointError{6, 6}, std::nullopt};
+  const PoseErrors near{0, 0, PointError{1, 1}, {}, {}}, far{0, 0, PointError{6, 6}, {}, {}};
   record.initial_errors = far, record.errors = near;
   EXPECT_EQ(record.outcome(), "saved");
   record.initial_errors = near;

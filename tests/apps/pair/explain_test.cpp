@@ -33,7 +33,7 @@ MethodRecord record_of(double fit, double refined, int selected = 30, int correc
   record.method = "mine";
   record.score = GroupingScore{500, selected, correct, 40, std::nullopt, correct / 40.0, std::nullopt};
   if (selected > 0) record.score->precision = static_cast<double>(correct) / selected;
-  const auto errors = [](double mean) { return PoseErrors{1, 1, PointError{2 * mean, mean}, std::nullopt}; };
+  const auto errors = [](double mean) { return PoseErrors{1, 1, PointError{2 * mean, mean}, std::nullopt, {}}; };
   if (fit >= 0) record.initial_errors = errors(fit), record.pose.initial = RigidTransform();
   record.pose.status = RefineStatus::Diverged;
   if (refined < 0) return record;
@@ -182,7 +182,7 @@ TEST(ExplainMethod, NoAnswer) {
 TEST(ExplainMethod, TheDensePoseIsToldApart) {
   MethodRecord lost = record_of(90, 80, 30, 2);
   EXPECT_THAT(explain(lost).text, Not(HasSubstr("surface")));
-  lost.dense_errors = PoseErrors{1, 1, PointError{0.5, 0.5}, std::nullopt};
+  lost.dense_errors = PoseErrors{1, 1, PointError{0.5, 0.5}, std::nullopt, {}};
   EXPECT_EQ(explain(lost).cause, Cause::GrouperMissed) << "it is not the correspondences' merit";
   EXPECT_THAT(explain(lost).text, HasSubstr("the dense refinement ends at 0.50 pr, which registers the pair"));
   lost.dense_errors->points->mean_pr = 70;

@@ -30,8 +30,8 @@ MethodRecord full_record() {
   record.pose.initial = RigidTransform();
   record.pose.target_from_source = RigidTransform();
   record.pose.covariance = PoseCovariance::Identity();
-  record.initial_errors = PoseErrors{2.0 / 3, 7, PointError{9, 5.5}, 0.1};
-  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, 1.0 / 7};
+  record.initial_errors = PoseErrors{2.0 / 3, 7, PointError{9, 5.5}, 0.1, {}};
+  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, 1.0 / 7, {}};
   return record;
 }
 
@@ -163,9 +163,9 @@ std::string errors_of(const std::optional<PoseErrors>& errors, bool is_judged) {
 }
 
 TEST(AddErrors, SuccessStartsAtTheFirstThresholdThatHolds) {
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1.2}, 0.05}, true), "1.0 2.0 3.0 1.2 0.05 true 1.5 true");
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{9, 5}, 0.1}, true), "1.0 2.0 9.0 5.0 0.1 true 5.0 false");
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 5.01}, 0.05}, true), "1.0 2.0 3.0 5.01 0.05 false null true");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1.2}, 0.05, {}}, true), "1.0 2.0 3.0 1.2 0.05 true 1.5 true");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{9, 5}, 0.1, {}}, true), "1.0 2.0 9.0 5.0 0.1 true 5.0 false");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 5.01}, 0.05, {}}, true), "1.0 2.0 3.0 5.01 0.05 false null true");
 }
 
 TEST(AddErrors, NoPoseHasFailedIfItWasJudged) {
@@ -174,8 +174,10 @@ TEST(AddErrors, NoPoseHasFailedIfItWasJudged) {
 }
 
 TEST(AddErrors, WithoutPointsSuccessIsUnknown) {
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, std::nullopt, std::nullopt}, false), "1.0 2.0 null null null null null null");
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1}, std::nullopt}, true), "1.0 2.0 3.0 1.0 null true 1.0 null");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, std::nullopt, std::nullopt, {}}, false),
+            "1.0 2.0 null null null null null null");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1}, std::nullopt, {}}, true),
+            "1.0 2.0 3.0 1.0 null true 1.0 null");
 }
 
 TEST(Dense, HasTheSameScores) {
@@ -183,7 +185,7 @@ TEST(Dense, HasTheSameScores) {
   record.dense = RefinedSurface();
   record.dense->status = SurfaceStatus::Refined;
   record.dense->after = {0.5, 0.25};
-  record.dense_errors = PoseErrors{1, 2, PointError{4, 3}, 0.05};
+  record.dense_errors = PoseErrors{1, 2, PointError{4, 3}, 0.05, {}};
   const Json dense = to_json(record)["dense"];
   EXPECT_EQ(dense["overlap"], 0.5);
   EXPECT_EQ(dense["mean_error_pr"], 3);

@@ -249,7 +249,7 @@ TEST(ChooseScenes, MedianThenWorstThenBestThenTheOthers) {
 TEST(ChooseScenes, OfEveryRunAndNoneWithoutSelections) {
   std::vector<StudyFolder> runs = {run_of({0.5}), run_of({0.5})};
   EXPECT_EQ(choose_scenes(runs, 9).size(), 2u);
-  for (StudyRecord& record : runs[0].records) record.selection.clear();
+  for (StudyRecord& record : runs[0].records) record.selection = {};
   ASSERT_EQ(choose_scenes(runs, 9).size(), 1u);
   EXPECT_EQ(choose_scenes(runs, 9)[0].run, 1);
 }
