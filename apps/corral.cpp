@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
   corral::add_run(app, action);
   corral::add_info(app, action);
   corral::add_match(app, action);
+  corral::add_import(app, action);
   corral::add_group(app, action);
   corral::add_refine(app, action);
   corral::add_score(app, action);

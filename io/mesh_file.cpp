@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "io/bin_file.h"
 #include "io/file.h"
 #include "io/inflate.h"
 #include "kernel/error.h"
@@ -29,10 +30,10 @@ struct MeshFormat {
   Parser parse;
   bool is_only_for_meshes;  ///< whatever has a name of this ending is a mesh
 };
-constexpr MeshFormat kFormats[] = {{".ply", parse_ply, true}, {".off", parse_off, true},  {".obj", parse_obj, true},
-                                   {".stl", parse_stl, true}, {".pcd", parse_pcd, true},  {".xyz", parse_xyz, true},
-                                   {".pts", parse_xyz, true}, {".asc", parse_xyz, false}, {".txt", parse_xyz, false},
-                                   {".csv", parse_xyz, false}};
+constexpr MeshFormat kFormats[] = {{".ply", parse_ply, true},  {".off", parse_off, true},  {".obj", parse_obj, true},
+                                   {".stl", parse_stl, true},  {".pcd", parse_pcd, true},  {".xyz", parse_xyz, true},
+                                   {".pts", parse_xyz, true},  {".asc", parse_xyz, false}, {".txt", parse_xyz, false},
+                                   {".csv", parse_xyz, false}, {".bin", parse_bin, false}};
 
 bool is_compressed(const std::string& path) { return ending_of(path) == ".gz"; }
 

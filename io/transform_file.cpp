@@ -6,6 +6,7 @@
 
 #include "io/file.h"
 #include "io/line_reader.h"
+#include "io/npy_file.h"
 #include "io/pose_entry.h"
 #include "io/toml_file.h"
 #include "kernel/error.h"
@@ -103,6 +104,16 @@ class PoseList {
   const std::vector<PoseEntry>& entries_;
 };
 
+/// A matrix of 4x4 or 3x4 that numpy wrote.
+PoseEntry array_pose(const std::string& path, const std::string& content) {
+  const Eigen::MatrixXd rows = parse_npy(path, content).rows;
+  if (rows.rows() != 4 || (rows.cols() != 3 && rows.cols() != 4) || !rows.allFinite())
+    throw IoError(path, "", "is no array of 4 x 4 or 3 x 4 finite numbers, expected a pose");
+  PoseEntry entry;
+  entry.numbers.assign(rows.data(), rows.data() + rows.size());
+  return entry;
+}
+
 bool is_file(const std::string& path) {
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
@@ -120,7 +131,10 @@ TransformName split_transform_name(const std::string& name) {
 
 StoredTransform read_transform(const std::string& name) {
   const TransformName split = split_transform_name(name);
-  const std::vector<PoseEntry> entries = parse_poses(split.file, read_file(split.file));
+  const std::string content = read_file(split.file);
+  const bool is_array = split.file.size() > 4 && split.file.compare(split.file.size() - 4, 4, ".npy") == 0;
+  const auto entries =
+      is_array ? std::vector<PoseEntry>{array_pose(split.file, content)} : parse_poses(split.file, content);
   return PoseList(split, entries).chosen();
 }
 

@@ -21,6 +21,7 @@ using Action = std::function<int()>;
 // Each adds one subcommand that sets `action`.
 void add_info(CLI::App& app, Action& action);
 void add_match(CLI::App& app, Action& action);
+void add_import(CLI::App& app, Action& action);
 void add_group(CLI::App& app, Action& action);
 void add_refine(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);

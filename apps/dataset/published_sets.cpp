@@ -10,7 +10,7 @@ const EmbeddedFiles& embedded_data();
 
 std::vector<PublishedSet> published_sets() {
   std::vector<PublishedSet> sets;
-  for (const char* name : {"default", "b3r", "stanford", "u3m", "u3or"}) {
+  for (const char* name : {"default", "b3r", "stanford", "u3m", "u3or", "3dmatch", "eth-tls", "kitti"}) {
     const std::string file = std::string(name) + ".toml";
     const TomlTable table = TomlTable::parse("data/" + file, embedded_data().at(file));
     const auto text = [&](const char* key) {
