@@ -76,7 +76,8 @@ class Reader {
 
   void add_table(NumberTable table, const Points* source, const Points* target) {
     if (!table.names.empty() && add_named(table)) return;
-    if (table.width() < 6 && table.size() != 6) return add_indices(table, source, target);
+    const bool are_pairs = table.width() == 2 && is_whole(table.rows);  // also six of them
+    if (are_pairs || (table.width() < 6 && table.size() != 6)) return add_indices(table, source, target);
     table = with_width(std::move(table), 6, "the matches");
     add_rows(table, {0, 1, 2, 3, 4, 5});
     int ignored = table.width() - 6;
@@ -120,12 +121,13 @@ class Reader {
       table.fail(0, "found " + std::to_string(table.width()) +
                         " numbers, expected six coordinates or a pair of indices, or two files of points");
     if (!source || !target)
-      throw IoError(table.path, "",
-                    "holds pairs of indices, expected the clouds that they count in, source and target");
-    const auto sizes = {source->rows(), target->rows()};
+      throw IoError(
+          table.path, "",
+          "holds pairs of indices, expected the clouds that they count in, source and target" +
+              std::string(table.width() == 3 ? "; or, if these are points, the file of the target points" : ""));
     const Eigen::Vector2d least = table.rows.topRows(2).rowwise().minCoeff(),
                           most = table.rows.topRows(2).rowwise().maxCoeff();
-    const bool reaches_count = most(0) == double(*sizes.begin()) || most(1) == double(*(sizes.begin() + 1));
+    const bool reaches_count = most(0) == double(source->rows()) || most(1) == double(target->rows());
     const int first = files_.first_index.value_or(least.minCoeff() >= 1 && reaches_count ? 1 : 0);
     if (!files_.first_index)
       note(first == 1 ? "the indices count from 1: none is 0, and one is the number of points"

@@ -58,7 +58,10 @@ std::vector<std::string> import_match_folder(const ImportFolderOptions& options,
     const ImportedPair pair = importer.read(files);
     for (const std::string& note : pair.notes) lines.push_back("note: " + note);
     lines.push_back(files.name + ": " + pair.summary);
-    DatasetPair row{files.name, absolute(files.source), absolute(files.target), "", {}};
+    DatasetPair row;
+    row.name = files.name;
+    row.source = absolute(files.source);
+    row.target = absolute(files.target);
     if (pair.target_from_source) {
       row.truth = "truth/" + files.name + ".txt";
       set.put(row.truth, transform_text(*pair.target_from_source));

@@ -46,7 +46,7 @@ class Tree {
       }
     return "";
   }
-  std::string cloud(const std::string& in, const std::vector<std::string>& names) const {
+  std::string first_cloud(const std::string& in, const std::vector<std::string>& names) const {
     for (const std::string& name : names)
       if (const std::string found = cloud(in, name); !found.empty()) return found;
     return "";
@@ -85,7 +85,7 @@ void add_pose(const Tree& tree, const std::string& in, PairFiles& pair) {
 }
 
 Pairs find_mac(const Tree& tree) {
-  static const std::regex pattern("(.*@)?(corr|corr_data)(_[A-Za-z0-9]+)?\\.txt");
+  static const std::regex pattern("(.*@)?(corr_data|corr)(_[A-Za-z0-9]+)?\\.txt");
   Pairs pairs;
   for (const std::string& file : tree.files()) {
     const std::string in = folder_of(file), name = name_of(file);
@@ -105,8 +105,8 @@ Pairs find_mac(const Tree& tree) {
       pair.source = tree.cloud(in, sides.substr(0, plus));
       pair.target = tree.cloud(in, sides.substr(plus + 1));
     } else {
-      pair.source = tree.cloud(in, {"source", "src"});
-      pair.target = tree.cloud(in, {"target", "tgt", "des", "dst"});
+      pair.source = tree.first_cloud(in, {"source", "src"});
+      pair.target = tree.first_cloud(in, {"target", "tgt", "des", "dst"});
     }
     pairs.push_back(std::move(pair));
   }
@@ -312,9 +312,11 @@ std::vector<PairFiles> find_match_pairs(const std::string& folder, const std::st
                       "; 'corral import matches --help' lists what is expected");
   if (count > 1) throw IoError(folder, "", "has pairs of several layouts, expected --layout with one of " + found);
   std::set<std::string> names;
-  for (const PairFiles& pair : pairs)
+  for (PairFiles& pair : pairs) {
+    if (pair.name.empty()) pair.name = file_word(fs::absolute(folder).lexically_normal().generic_string());
     if (!names.insert(pair.name).second)
       throw IoError(folder, "", "has two pairs that would be named " + pair.name + ", expected one for each name");
+  }
   return pairs;
 }
 

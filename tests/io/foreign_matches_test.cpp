@@ -117,6 +117,7 @@ TEST_F(ForeignMatchesTest, IndexPairsCountFromZeroUnlessTheyShowOtherwise) {
   EXPECT_THAT(one.matches.source_keypoints, ElementsAre(3, 1));
   EXPECT_THAT(one.notes, ElementsAre(HasSubstr("count from 1")));
   EXPECT_THAT(indexed("3 1\n1 2\n", 1).matches.source_keypoints, ElementsAre(2, 0));
+  EXPECT_EQ(indexed("3 0\n1 2\n0 0\n1 1\n2 2\n3 3\n").rows, 6);
   EXPECT_THAT(complaint([&] { indexed("3 0\n1 4\n"); }), HasSubstr("line 2: the index of a target point is 4"));
   EXPECT_THAT(complaint([&] { indexed("3 0\n-1 1\n"); }), HasSubstr("line 2: the index of a source point is -1"));
   EXPECT_THAT(complaint([&] { indexed("3 0\n0.5 1\n"); }), HasSubstr("six coordinates"));
@@ -137,7 +138,8 @@ TEST_F(ForeignMatchesTest, MalformedTextIsNamedByItsLine) {
   EXPECT_THAT(complaint([&] { read("1 2 3 4 5 6\n1 2 x 4 5 6\n"); }), HasSubstr("line 2: found 'x'"));
   EXPECT_THAT(complaint([&] { read(""); }), HasSubstr("the file is empty"));
   EXPECT_THAT(complaint([&] { read("# nothing\n"); }), HasSubstr("expected rows of numbers"));
-  EXPECT_THAT(complaint([&] { read("1 2 3\n4 5 6\n"); }), HasSubstr("two files of points"));
+  EXPECT_THAT(complaint([&] { read("1.5 2 3\n4 5 6\n"); }), HasSubstr("two files of points"));
+  EXPECT_THAT(complaint([&] { read("1 2 3\n4 5 6\n"); }), HasSubstr("the file of the target points"));
 }
 
 TEST_F(ForeignMatchesTest, ArraysOfNumpy) {

@@ -149,7 +149,11 @@ TEST_F(ImportTest, MacIndicesBesideClouds) {
   put("mac/demo/source.xyz", sources_);
   put("mac/demo/target.xyz", targets_);
   put("mac/demo/GTmat.txt", place_.text("truth.txt"));
-  expect_set("mac", " --resolution 1", {"demo"});
+  put("mac/python/corr.txt", "0 0\n");  // of a cloud that is not there: the coordinates are read instead
+  put("mac/python/corr_data.txt", six_);
+  put("mac/python/label.txt", labels_);
+  put("mac/python/GTmat.txt", place_.text("truth.txt"));
+  expect_set("mac", " --resolution 1", {"demo", "python"});
   const CsvTable pairs = read_csv(place_ / "set/pairs.csv");
   EXPECT_EQ(pairs.rows[0][1], fs::canonical(place_ / "mac/demo/source.xyz").string());
 }

@@ -262,7 +262,7 @@ TEST(DatasetList, SaysWhereEachSetComesFrom) {
     for (const auto& file : set["known_files"]) EXPECT_EQ(file["sha256"].get<std::string>().size(), 64U);
     EXPECT_THAT(text, HasSubstr("\n  use       " + set["use"].get<std::string>()));
   }
-  EXPECT_THAT(names, ElementsAre("default", "b3r", "stanford", "u3m", "u3or"));
+  EXPECT_THAT(names, ElementsAre("default", "b3r", "stanford", "u3m", "u3or", "3dmatch", "eth-tls", "kitti"));
 }
 
 }  // namespace
