@@ -49,7 +49,6 @@ std::vector<std::string> import_match_folder(const ImportFolderOptions& options,
   dataset.resolution = options.resolution;
   dataset.provenance = "matches of other programs, read from " + absolute(options.folder);
   dataset.attributes = attribute_names(pairs);
-  dataset.attributes.insert(dataset.attributes.begin(), "matches");
   dataset.attributes.insert(dataset.attributes.end(), {"rows", "inlier_ratio"});
   MatchImporter importer(options);
   std::vector<std::string> lines;
@@ -60,15 +59,17 @@ std::vector<std::string> import_match_folder(const ImportFolderOptions& options,
     lines.push_back(files.name + ": " + pair.summary);
     DatasetPair row;
     row.name = files.name;
-    row.source = absolute(files.source);
-    row.target = absolute(files.target);
+    if (!files.source.empty() && !files.target.empty()) {  // one cloud alone is of no use to a pair
+      row.source = absolute(files.source);
+      row.target = absolute(files.target);
+    }
     if (pair.target_from_source) {
       row.truth = "truth/" + files.name + ".txt";
       set.put(row.truth, transform_text(*pair.target_from_source));
     }
     if (pair.matches) {
-      set.put("matches/" + files.name + ".csv", matches_text(*pair.matches));
-      files.attributes.push_back({"matches", "matches/" + files.name + ".csv"});
+      row.matches = "matches/" + files.name + ".csv";
+      set.put(row.matches, matches_text(*pair.matches));
       files.attributes.push_back({"rows", std::to_string(pair.matches->size())});
     }
     if (pair.correct)

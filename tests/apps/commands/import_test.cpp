@@ -200,7 +200,7 @@ TEST_F(ImportTest, OwnTables) {
   expect_set("o", "", {"one"});
 }
 
-TEST_F(ImportTest, FragmentsOf3DMatchWithFeaturesAndWithout) {
+TEST_F(ImportTest, FragmentsOf3DMatchWithFeatures) {
   std::vector<double> features;
   for (int row = 0; row < 100; ++row) features.insert(features.end(), {double(row), double(row * row)});
   const std::string described = npy("(100, 2)", features);
