@@ -48,19 +48,21 @@ StudyOutcome outcome_of(const WorkList& list, const FinishedUnits& finished, con
   return outcome;
 }
 
-StudyOutcome finish_study(const WorkList& list, const FinishedUnits& finished, const std::string& folder,
+StudyOutcome finish_study(const WorkList& list, FinishedUnits& finished, const std::string& folder,
                           const std::string& command_line) {
   std::vector<std::size_t> all(list.units.size());
   std::iota(all.begin(), all.end(), 0);
   StudyOutcome outcome = outcome_of(list, finished, all);
   StudyFolder run{folder, {}, {}, assemble_records(list, finished.results())};
   for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
+  const std::string manifest =
+      manifest_text(list, finished.inputs(), {finished.results(), finished.machines(), command_line});
+  finished.release_results();  // a large study needs the room
   outcome.summary = summarize(experiment_tables(run));
   const std::filesystem::path place(folder);
   write_files({{(place / "records.csv").string(), records_text(run.records)},
                {(place / "summary.csv").string(), summary_text(outcome.summary)},
-               {(place / "manifest.json").string(),
-                manifest_text(list, finished.inputs(), {finished.results(), finished.machines(), command_line})}});
+               {(place / "manifest.json").string(), manifest}});
   remove_leftovers((place / "selections").string());  // of calls that were killed
   return outcome;
 }

@@ -44,7 +44,9 @@ void write_scenes(const std::string& folder, const std::vector<std::string>& met
       for (const std::string& method : methods)
         if (stream.uniform() < 0.2) pair.selected[method].push_back(row);
     }
-    write_file(folder + "/" + selection_of(scene), selections_text(pair, methods));
+    const std::string selection = folder + "/" + selection_of(scene);
+    write_file(selection, selections_text(pair, methods));
+    write_file(selection.substr(0, selection.size() - 4) + ".poses.csv", poses_text({}));
   }
   write_file(folder + "/meshes/truth.txt", transform_text(RigidTransform()));
 }

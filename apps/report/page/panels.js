@@ -167,33 +167,25 @@ const panels = (() => {
         `${counted(sum(own, 'empty'), 'empty selection')}; ${counted(experiment.failed, 'failure')}.` + gaps;
   }
 
+  /// Filled when it is opened: a study has thousands of numbers.
   function tableOf(experiment) {
     if (experiment.means.length === 0) return '';
     const names = unique(experiment.means.flatMap(Object.keys));
     const textual = ['level', 'method'];
-    return element(
-        'details', {}, element('summary', {}, 'Numbers'),
-        element(
-            'div', {class: 'wide'},
-            element(
-                'table', {},
-                element(
-                    'thead', {},
-                    element(
-                        'tr', {},
-                        ...names.map(
-                            name => element('th', {scope: 'col', class: textual.includes(name) && 'text'}, name)))),
-                element(
-                    'tbody', {},
-                    ...experiment.means.map(
-                        mean => element(
-                            'tr', {},
-                            ...names.map(
-                                name => element(
-                                    'td', {class: textual.includes(name) && 'text'},
-                                    name === 'method'                                    ? labelOf(mean.method) :
-                                        name === 'level' || Number.isInteger(mean[name]) ? String(mean[name]) :
-                                                                                           fixed(mean[name], 4)))))))));
+    const cellOf = (mean, name) => name === 'method' ? labelOf(mean.method) :
+        name === 'level' || Number.isInteger(mean[name]) ? String(mean[name]) :
+                                                           fixed(mean[name], 4);
+    const rowOf = mean => element(
+        'tr', {},
+        ...names.map(name => element('td', {class: textual.includes(name) && 'text'}, cellOf(mean, name))));
+    const head = names.map(name => element('th', {scope: 'col', class: textual.includes(name) && 'text'}, name));
+    const place = element('div', {class: 'wide'}), details = element('details', {}, element('summary', {}, 'Numbers'), place);
+    details.addEventListener('toggle', () => {
+      place.append(element(
+          'table', {}, element('thead', {}, element('tr', {}, ...head)),
+          element('tbody', {}, ...experiment.means.map(rowOf))));
+    }, {once: true});
+    return details;
   }
 
   function swatch(style) {

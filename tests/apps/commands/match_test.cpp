@@ -226,10 +226,10 @@ TEST(MatchReport, TheStagesAreATableInWordsAndAListInJson) {
   EXPECT_GT(memory, 1);
   EXPECT_LT(memory, 4000);
   for (const char* side : {"source", "target"}) {
-    EXPECT_THAT(testing::keys_of(report[side]),
-                ElementsAre("candidates", "descriptors", "dropped_no_frame", "dropped_no_histogram",
-                            "dropped_small_support", "faces", "keypoints", "median_spacing", "normals", "points", "resolution",
-                            "strays", "topology"));
+    EXPECT_THAT(
+        testing::keys_of(report[side]),
+        ElementsAre("candidates", "descriptors", "dropped_no_frame", "dropped_no_histogram", "dropped_small_support",
+                    "faces", "keypoints", "median_spacing", "normals", "points", "resolution", "strays", "topology"));
     EXPECT_EQ(report[side]["topology"]["components"], 1);
     EXPECT_EQ(report[side]["topology"]["isolated"], 0);
     EXPECT_EQ(report[side]["descriptors"].get<int>() + report[side]["dropped_small_support"].get<int>() +
@@ -276,8 +276,8 @@ TEST(RunOptions, VerboseHasTheStages) {
   const Outcome outcome = place.corral("run model.ply copy.ply --truth truth.txt --methods ss -v");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err,
-              AllOf(StartsWith("source: 2562 points, 5120 faces, normals by the faces, 1 components, pr "), HasSubstr("\nstage "),
-                    HasSubstr("\nmatching "), HasSubstr("\ndescriptors of the target ")));
+              AllOf(StartsWith("source: 2562 points, 5120 faces, normals by the faces, 1 components, pr "),
+                    HasSubstr("\nstage "), HasSubstr("\nmatching "), HasSubstr("\ndescriptors of the target ")));
   EXPECT_THAT(outcome.out, HasSubstr("% of the correct matches agree within 10 degrees"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("hint: ")));
 }

@@ -92,6 +92,7 @@ TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   EXPECT_THAT(names, ::testing::ElementsAre("noise-b3r-precision-recall:", "noise-b3r-precision", "noise-b3r-recall",
                                             "noise-b3r-f1:", "noise-b3r-f1",
                                             "noise-b3r-registration:", "noise-b3r-initial-success", "noise-b3r-success",
+                                            "noise-b3r-success-in-time:", "noise-b3r-success-in-time",
                                             "noise-b3r-success-curve:",
                                             "noise-b3r-success-curve"));  // nobody tried the dense pose
   const Panel& precision = panel_named(figures, "noise-b3r-precision");

@@ -149,7 +149,8 @@ TEST_F(Shards, DataThatChangedInBetweenAreNamed) {
 }
 
 TEST_F(Shards, NothingIsLostOrDoneTwiceWhenTheyAreKilled) {
-  const std::string line = "cd '" + (place_ / "") + "' && '" CORRAL_SOURCE_DIR "/tests/interruption' '" CORRAL_PROGRAM
+  const std::string line = "cd '" + (place_ / "") +
+                           "' && '" CORRAL_SOURCE_DIR "/tests/interruption' '" CORRAL_PROGRAM
                            "' data 30 small.toml >log 2>&1";
   EXPECT_EQ(std::system(line.c_str()), 0) << place_.text("log");
   EXPECT_THAT(place_.text("log"), HasSubstr("30 kills, "));

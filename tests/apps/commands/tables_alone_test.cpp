@@ -118,7 +118,7 @@ TEST_F(TablesAlone, OfCoordinatesAloneHaveAReportToo) {
   ASSERT_EQ(evaluate("bare", "-o run").status, 0);
   const Outcome outcome = place_.corral("report run -o report");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(place_.text("report/data/small-b3r-success-in-time.csv"), HasSubstr("1 s,"));
+  EXPECT_THAT(place_.text("report/data/small-b3r-success-in-time.csv"), HasSubstr("\"1 s\",4,"));
 }
 
 TEST_F(TablesAlone, AreBinnedByTheirShareOfCorrectMatches) {

@@ -63,7 +63,8 @@ TEST(PageSample, HoldsPairsWithAllTheirGroupersInOrder) {
 TEST(PageSample, HoldsOfEveryLevelWhatFailedAndADrawOfTheOthers) {
   std::map<std::pair<std::string, std::string>, std::pair<int, int>> counts;  // failed, others
   double places = 0, others = 0;
-  for (const StudyRecord* record : sample_records(study(), {}, 4000).at(0)) {
+  const PageRecords sample = sample_records(study(), {}, 4000);
+  for (const StudyRecord* record : sample.at(0)) {
     if (record->method != "gc" || record->experiment == "time") continue;
     auto& [failed, sound] = counts[{record->experiment, record->level}];
     const bool is_failed = record->status.state == MethodState::Failed;
@@ -102,7 +103,8 @@ TEST(PageSample, BeginsWithTheScenesAndThenTakesPairsOfNoFit) {
     if (record.pair.str().rfind("pair30", 0) == 0) record.truth = "inverted";
   }
   int misfits = 0;
-  for (const StudyRecord* record : sample_records(runs, {}, 1000).at(0)) misfits += record->truth == "inverted";
+  const PageRecords sample = sample_records(runs, {}, 1000);
+  for (const StudyRecord* record : sample.at(0)) misfits += record->truth == "inverted";
   EXPECT_GT(misfits, 300) << "one of 58 pairs, but half of those that are taken first";
 }
 

@@ -143,7 +143,7 @@ TEST_P(PrintedFigures, NoWordOverlapsAnotherOrLeavesThePage) {
     expect_printable(read_page(file.path(), place / "page.html"),
                      written_words(place.text("out/scripts/" + name + ".gp")));
   }
-  EXPECT_EQ(figures, 3 * 8 + 3);
+  EXPECT_EQ(figures, 3 * 9 + 3);
 }
 
 // Debian's fontconfig brings DejaVu, which is wide; corral's scripts bring Liberation.

@@ -22,16 +22,16 @@ StudyRecord record_with(double rotation_deg, double translation_pr, double metre
 
 TEST(FieldCriteria, AreInDegreesAndMetresInclusive) {
   const auto value = [](const char* name, const StudyRecord& record) { return *measure(name).of(record); };
-  // 0.3 m are 3 pr of 0.1 m
-  EXPECT_EQ(value("success_3dmatch", record_with(15, 3, 0.1)), 1);
-  EXPECT_EQ(value("success_3dmatch", record_with(15.001, 3, 0.1)), 0);
-  EXPECT_EQ(value("success_3dmatch", record_with(15, 3.001, 0.1)), 0);
-  EXPECT_EQ(value("success_3dmatch_rmse", record_with(90, 2, 0.1)), 1);
-  EXPECT_EQ(value("success_3dmatch_rmse", record_with(0, 2.001, 0.1)), 0);
-  EXPECT_EQ(value("success_kitti", record_with(5, 2, 0.3)), 1);
-  EXPECT_EQ(value("success_kitti", record_with(5, 2.001, 0.3)), 0);
-  EXPECT_EQ(value("success_kitti_2m", record_with(5, 4, 0.5)), 1);
-  EXPECT_EQ(value("success_kitti_2m", record_with(5.001, 4, 0.5)), 0);
+  // A pr of an eighth of a metre, so that 2.4 pr are 0.3 m to the last bit.
+  EXPECT_EQ(value("success_3dmatch", record_with(15, 2.4, 0.125)), 1);
+  EXPECT_EQ(value("success_3dmatch", record_with(15.001, 2.4, 0.125)), 0);
+  EXPECT_EQ(value("success_3dmatch", record_with(15, 2.401, 0.125)), 0);
+  EXPECT_EQ(value("success_3dmatch_rmse", record_with(90, 1.6, 0.125)), 1);
+  EXPECT_EQ(value("success_3dmatch_rmse", record_with(0, 1.601, 0.125)), 0);
+  EXPECT_EQ(value("success_kitti", record_with(5, 4.8, 0.125)), 1);
+  EXPECT_EQ(value("success_kitti", record_with(5, 4.801, 0.125)), 0);
+  EXPECT_EQ(value("success_kitti_2m", record_with(5, 16, 0.125)), 1);
+  EXPECT_EQ(value("success_kitti_2m", record_with(5.001, 16, 0.125)), 0);
 }
 
 TEST(FieldCriteria, AreAbsentWithoutMetresOrAPose) {
@@ -51,7 +51,7 @@ TEST(FieldCriteria, StandInTheSummaryWithQuantilesOfErrors) {
   StudyFolder run;
   run.experiments = {info};
   for (int i = 0; i < 21; ++i) {  // errors of 0 .. 20 degrees and as many pr
-    run.records.push_back(record_with(i, i, 0.1));
+    run.records.push_back(record_with(i, i, 0.125));
     run.records.back().pair = "p" + std::to_string(i);
     run.records.back().refined.mean_error_pr = i;
   }
@@ -59,7 +59,7 @@ TEST(FieldCriteria, StandInTheSummaryWithQuantilesOfErrors) {
   EXPECT_EQ(row.of("refined_rotation_error_deg").value, 10);
   EXPECT_EQ(row.of("refined_rotation_error_deg_q75").value, 15);
   EXPECT_EQ(row.of("refined_translation_error_pr_q95").value, 19);
-  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch").value, 4.0 / 21);   // up to 3 pr
+  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch").value, 3.0 / 21);   // up to 2.4 pr
   EXPECT_DOUBLE_EQ(*row.of("success_kitti_2m").value, 6.0 / 21);  // up to 5 degrees
   run.records[0].refined = {};                                    // no pose: the largest error there is
   EXPECT_EQ(summarize(experiment_tables(run)).at(0).of("refined_mean_error_pr_q75").value, 16);
