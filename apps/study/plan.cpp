@@ -41,9 +41,9 @@ class Estimator {
     const std::uint64_t rows =
         is_table ? std::min(bytes_of(unit.pair.matches) / 100, kMostRows) : keypoints_of(unit, source);
     const std::uint64_t described = is_table ? 0 : keypoints_of(unit, target);
-    std::uint64_t nanoseconds = 10'000'000 + 3'000 * vertices + 40 * rows * described;
-    nanoseconds += calls * (1'000 * rows + 4 * rows * rows);
-    if (unit.dense) nanoseconds += calls * 10'000 * vertices;
+    std::uint64_t nanoseconds = 6'000'000 + 1'800 * vertices + 24 * rows * described;
+    nanoseconds += calls * (600 * rows + 5 * rows * rows / 2);
+    if (unit.dense) nanoseconds += calls * 6'000 * vertices;
     std::uint64_t memory = 0;
     for (const GroupingTask& task : unit.tasks) memory = std::max(memory, memory_of(task, static_cast<int>(rows)));
     const std::uint64_t bytes = 40'000'000 + 400 * vertices + 3'200 * (rows + described) + memory;
