@@ -30,7 +30,7 @@ std::optional<AppendFile> AppendFile::create(const std::string& path) {
 void AppendFile::append(const std::string& text) {
   if (is_broken_)
     throw IoError(path(), "byte " + std::to_string(size_),
-                  "cannot be written, as what failed here could not be undone");
+                  "cannot be appended to, because an earlier write failed here and could not be undone");
   try {
     file_.write(text);
     file_.put_on_disk();

@@ -15,7 +15,9 @@ StoredMesh parse_bin(const std::string& path, std::string_view content) {
     throw IoError(path, "byte " + std::to_string(content.size()),
                   "the file ends within a point, expected 16 bytes for each (x, y, z, reflectance)");
   const std::size_t points = content.size() / kPoint;
-  if (points > static_cast<std::size_t>(kMaximumCount)) throw IoError(path, "", "has more points than can be counted");
+  if (points > static_cast<std::size_t>(kMaximumCount))
+    throw IoError(path, "",
+                  "has " + std::to_string(points) + " points, expected at most " + std::to_string(kMaximumCount));
   StoredMesh cloud;
   cloud.vertices.resize(static_cast<Eigen::Index>(points), 3);
   std::vector<double> axis(points);

@@ -144,7 +144,7 @@ StoredArray parse_npy(const std::string& path, std::string_view content) {
     throw IoError(path, "byte " + std::to_string(byte), problem);
   };
   if (content.substr(0, kMagic.size()) != kMagic)
-    fail(0, "no array of numpy, expected a file that begins with \\x93NUMPY");
+    fail(0, "not a NumPy array, expected a file that begins with \\x93NUMPY");
   if (content.size() < 12) fail(content.size(), "the file ends here, expected the description of an array");
   const int version = static_cast<unsigned char>(content[6]);
   if (version < 1 || version > 3) fail(6, "the version is " + std::to_string(version) + ", expected 1, 2 or 3");

@@ -93,7 +93,7 @@ class PoseList {
     for (const PoseEntry& entry : entries_) known.push_back(key_of(entry));
     if (entries_.size() == 1 && known[0].empty())
       throw IoError(name_.file, "pose " + name_.key,
-                    "is not there: the file holds one pose without a name, leave out the key");
+                    "is not in the file, which holds a single unnamed pose; leave out the key");
     const std::string nearest = nearest_name(name_.key, known);
     throw IoError(name_.file, "pose " + name_.key,
                   "is not there, expected one of " + keys() + ", or SOURCE,TARGET of two of them" +

@@ -51,16 +51,6 @@ int evaluate_time(const Settings& settings, const WorkList& list) {
   return kOk;
 }
 
-Json to_json(const Settings& settings, const StudyOutcome& outcome) {
-  Json json = {{"run", settings.study.run}};
-  if (settings.shard) json["shard"] = to_text(settings.study.shard);
-  json.update(Json{{"pairs", outcome.units},
-                   {"failed", outcome.failed},
-                   {"misfits", outcome.misfits},
-                   {"warnings", outcome.warnings}});
-  return json;
-}
-
 int evaluate_pairs(const Settings& settings, const StudyCall& call, const WorkList& list) {
   std::optional<Progress> progress;
   StudyObserver observer;
@@ -78,7 +68,9 @@ int evaluate_pairs(const Settings& settings, const StudyCall& call, const WorkLi
   progress.reset();
   say_study(outcome);
   if (settings.json) {
-    put("", to_json(settings, outcome));
+    Json json = study_json(settings.study.run, outcome);
+    if (settings.shard) json["shard"] = to_text(settings.study.shard);
+    put("", json);
   } else if (settings.shard) {
     say("shard " + to_text(settings.study.shard) + ": " + counts_text(outcome) +
         "; when all shards are done: corral merge " + settings.study.run);

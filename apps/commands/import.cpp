@@ -110,7 +110,7 @@ void add_import(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   ImportFolderOptions& options = settings->options;
   command->add_option("input", options.folder, "Table, source points, or folder")->type_name("PATH")->required();
-  command->add_option("targets", settings->pair.targets, "Target points, if the first file has only source points")
+  command->add_option("targets", settings->pair.targets, "Target points, if the first file has the source points only")
       ->type_name("FILE");
   command->add_option("-o,--output", options.output, "Where the table goes (default: standard output), or the data set")
       ->type_name("PATH");
@@ -135,7 +135,7 @@ void add_import(CLI::App& app, Action& action) {
                       "A match is correct up to this distance in mesh units (default: 4 pr)");
   command
       ->add_option("--first-index", settings->first_index,
-                   "What indices count from (default: 1 if they show it, else 0)")
+                   "First index, 0 or 1 (default: 1 if no index is 0 and one equals the number of points, else 0)")
       ->check(CLI::IsMember({0, 1}));
   command->add_flag("--mutual", options.matching.mutual,
                     "Features: keep a match only if each is the nearest of the other");

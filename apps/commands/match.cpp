@@ -112,7 +112,7 @@ void add_match(CLI::App& app, Action& action) {
          "Instead of detecting and describing: rows x y z f1 .. fn, of any length, as text, .npy or .npz");
   option("--target-features", settings->target_features.features, "The same of the target");
   option("--source-keypoints", settings->source_features.keypoints,
-         "Keypoints where the rows of features have none: rows x y z, or vertices of the source mesh");
+         "Keypoints, if the features have no coordinates: rows x y z, or vertex indices of the source mesh");
   option("--target-keypoints", settings->target_features.keypoints, "The same of the target");
   add_match_options(*command, settings->match);
   add_drop_stray(*command, settings->drop_stray);

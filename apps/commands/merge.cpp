@@ -17,15 +17,13 @@ int merge(const Settings& settings) {
   const auto [outcome, notes] = merge_study(settings.study, settings.parts, settings.data);
   for (const std::string& note : notes) say("note: " + note);
   say_study(outcome);
-  if (settings.json)
-    put("", Json{{"run", settings.study},
-                 {"pairs", outcome.units},
-                 {"failed", outcome.failed},
-                 {"misfits", outcome.misfits},
-                 {"warnings", outcome.warnings},
-                 {"notes", notes}});
-  else
+  if (settings.json) {
+    Json json = study_json(settings.study, outcome);
+    json["notes"] = notes;
+    put("", json);
+  } else {
     put("", overview_text(outcome.summary));
+  }
   say(counts_text(outcome) + "; the study is in " + settings.study);
   return outcome.failed > 0 ? kPartial : kOk;
 }

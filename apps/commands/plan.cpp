@@ -128,8 +128,7 @@ void add_plan(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--like", settings->like,
-          "A study of which recorded times are taken: those of the same pairs as they are, else they scale the "
-          "estimates")
+          "Use the times recorded in this study: of the same pairs as they are, of others to scale the estimates")
       ->type_name("STUDY");
   command->add_option("--scaling", settings->scaling, "Also draw the time of 1 to 1000 shards, into this folder")
       ->type_name("FOLDER");

@@ -65,6 +65,14 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
          "most 5 pr. summary.csv has every level.\n";
 }
 
+Json study_json(const std::string& folder, const StudyOutcome& outcome) {
+  return {{"run", folder},
+          {"pairs", outcome.units},
+          {"failed", outcome.failed},
+          {"misfits", outcome.misfits},
+          {"warnings", outcome.warnings}};
+}
+
 std::string counts_text(const StudyOutcome& outcome) {
   return std::to_string(outcome.units) + " pairs, " + std::to_string(outcome.failed) + " failed" +
          (outcome.failed > 0 ? " (records.csv says why)" : "");

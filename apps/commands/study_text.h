@@ -11,6 +11,9 @@ namespace corral {
 /// A table for the terminal: each grouper in each experiment, by its means over the levels.
 std::string overview_text(const std::vector<SummaryRow>& rows);
 
+/// The counts and warnings of a study, for scripts.
+Json study_json(const std::string& folder, const StudyOutcome& outcome);
+
 /// "463 pairs, 2 failed (records.csv says why)".
 std::string counts_text(const StudyOutcome& outcome);
 

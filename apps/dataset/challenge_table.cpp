@@ -67,7 +67,7 @@ class Drawing {
       const double residual = (truth_.rotation * source + truth_.translation - target).norm();
       if ((residual <= options_.threshold_pr * real_.resolution) == is_correct) return row;
     }
-    throw InvalidInput("challenge", "noise_pr", options_.noise_pr, "less, so that correct matches stay correct");
+    throw InvalidInput("challenge", "noise_pr", options_.noise_pr, "a deviation that leaves correct matches within the threshold");
   }
 
   DrawnRow beside_correct() {

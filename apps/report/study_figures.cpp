@@ -144,7 +144,7 @@ void add_budgets(const ExperimentInfo& info, const std::map<std::string, std::ve
   Panel panel = empty_panel(info, "success-in-time");
   panel.x_axis = "time of the grouping at most";
   panel.y_axis = "aligned within 5 pr";
-  panel.note = "Over the pairs of all levels, wall time of the grouping alone in one thread.";
+  panel.note = "Pairs of all levels; wall time of the grouping alone, in one thread.";
   panel.levels = {"1 ms", "10 ms", "100 ms", "1 s"};
   for (const std::string& method : info.methods) {
     const auto found = records.find(method);

@@ -109,7 +109,7 @@ void FinishedUnits::note_input(const std::string& file, const std::string& hash,
   if (known.empty()) known = hash;
   if (known != hash)
     throw IoError(journal.path, "",
-                  "was made from another content of " + file +
+                  "was made from a different version of " + file +
                       ", expected the same data for the whole study (or another folder for -o)");
 }
 

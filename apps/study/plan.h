@@ -14,8 +14,8 @@ namespace corral {
 ///   bytes / 100
 ///   time = a + b (V + W) + c M W + per call of a grouper (d M + e M^2) + dense f (V + W)
 ///
-/// Whole numbers throughout, so that every machine finds the same. The constants were fitted to recorded times (paper/README.md
-/// says how far they are off): the split needs their proportions, `corral plan --like` scales the times to a machine.
+/// Whole numbers throughout, so that every machine finds the same. The constants were scaled to the recorded times of one study
+/// (paper/README.md): the split needs their proportions only, `corral plan --like` adapts the times to a machine.
 struct UnitEstimate {
   std::uint64_t microseconds = 0;  ///< on one processor
   std::uint64_t bytes = 0;         ///< at most at a time

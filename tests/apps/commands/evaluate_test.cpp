@@ -247,7 +247,7 @@ TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {
   place_.put("data/b3r/m1-0.05.txt", replaced(place_.text("data/b3r/m1-0.05.txt"), "\n", " \n"));
   outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("another content of"), HasSubstr("m1-0.05.txt")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("a different version of"), HasSubstr("m1-0.05.txt")));
 }
 
 TEST_F(Evaluate, AnUnfinishedStudyIsSaidToBe) {

@@ -145,7 +145,7 @@ TEST_F(Shards, DataThatChangedInBetweenAreNamed) {
   place_.put("data/b3r/m1.ply", place_.text("data/b3r/m1.ply") + " ");
   place_.put("data/b3r/m2.ply", place_.text("data/b3r/m2.ply") + " ");
   ASSERT_EQ(shard("2/2", "run").status, 0);
-  EXPECT_THAT(merge("run").err, AllOf(HasSubstr("another content of"), HasSubstr("data/b3r/m")));
+  EXPECT_THAT(merge("run").err, AllOf(HasSubstr("a different version of"), HasSubstr("data/b3r/m")));
 }
 
 TEST_F(Shards, NothingIsLostOrDoneTwiceWhenTheyAreKilled) {
