@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <numeric>
 
-#include "grouping/column_loops.h"
-#include "grouping/compatibility.h"
-#include "grouping/filter_loops.h"
+#include "grouping/columns/column_loops.h"
+#include "grouping/columns/compatibility.h"
+#include "grouping/columns/filter_loops.h"
 
 namespace corral {
 namespace {

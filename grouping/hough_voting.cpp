@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "grouping/column_loops.h"
+#include "grouping/columns/column_loops.h"
 #include "kernel/bounding_box.h"
 #include "kernel/columns.h"
 

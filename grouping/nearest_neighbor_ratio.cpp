@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "grouping/compatibility.h"
+#include "grouping/columns/compatibility.h"
 
 namespace corral {
 

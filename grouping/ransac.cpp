@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "grouping/filter_loops.h"
+#include "grouping/columns/filter_loops.h"
 #include "kernel/random.h"
 #include "kernel/triangle_fit.h"
 

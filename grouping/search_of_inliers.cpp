@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "grouping/compatibility.h"
-#include "grouping/filter_loops.h"
+#include "grouping/columns/compatibility.h"
+#include "grouping/columns/filter_loops.h"
 
 namespace corral {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "grouping/grouper.h"
-#include "grouping/otsu.h"
+#include "grouping/columns/otsu.h"
 #include "kernel/options.h"
 
 namespace corral {

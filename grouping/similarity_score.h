@@ -2,7 +2,7 @@
 #pragma once
 
 #include "grouping/grouper.h"
-#include "grouping/otsu.h"
+#include "grouping/columns/otsu.h"
 #include "kernel/options.h"
 
 namespace corral {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "grouping/compatibility.h"
-#include "grouping/compatibility_graph.h"
-#include "grouping/filter.h"
-#include "grouping/leading_entry.h"
+#include "grouping/columns/compatibility.h"
+#include "grouping/graph/compatibility_graph.h"
+#include "grouping/columns/filter.h"
+#include "grouping/graph/leading_entry.h"
 
 namespace corral {
 namespace {

@@ -39,6 +39,7 @@ const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "ap
 std::map<std::string, Room> make_rooms() {
   const std::string surface = "kernel/surface", mesh = surface + "/mesh", search = surface + "/search",
                     matching = surface + "/matching", scan = surface + "/scan";
+  const std::string columns = "grouping/columns", graph = "grouping/graph";
   const Names all_of_surface = {surface, mesh, search, matching, scan};
   std::map<std::string, Room> rooms = {
       {"kernel", {{"kernel"}, {"Eigen", "hwy"}}},
@@ -46,7 +47,9 @@ std::map<std::string, Room> make_rooms() {
       {search, {{"kernel", mesh, search}, kSurfaceLibraries}},
       {matching, {{"kernel", matching}, kSurfaceLibraries}},
       {scan, {{"kernel", mesh, search, scan}, kSurfaceLibraries}},
-      {"grouping", {{"kernel", "grouping"}, {"Eigen", "hwy"}}},
+      {columns, {{"kernel", columns}, {"Eigen", "hwy"}}},
+      {graph, {{"kernel", columns, graph}, {"Eigen", "hwy"}}},
+      {"grouping", {{"kernel", columns, graph, "grouping"}, {"Eigen", "hwy"}}},
       {"refine", {{"kernel", "refine"}, {"Eigen", "hwy", "ceres"}}},
   };
   Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "nlohmann", "toml++"}};
@@ -54,7 +57,7 @@ std::map<std::string, Room> make_rooms() {
   io.includes.insert({"kernel", "io"});
   rooms[surface] = pipeline;
   rooms["io"] = io;
-  Names below = {"kernel", "grouping", "refine", "io"};
+  Names below = {"kernel", "grouping", columns, graph, "refine", "io"};
   below.insert(all_of_surface.begin(), all_of_surface.end());
   for (const std::string& floor : kAppFloors) {
     below.insert(floor);

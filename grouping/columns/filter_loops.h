@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "grouping/filter.h"
+#include "grouping/columns/filter.h"
 
 namespace corral {
 

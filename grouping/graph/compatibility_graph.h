@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "grouping/filter.h"
-#include "grouping/principal_eigenvector.h"
+#include "grouping/columns/filter.h"
+#include "grouping/graph/principal_eigenvector.h"
 #include "kernel/correspondence_set.h"
 
 namespace corral {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/compatibility.h"
+#include "grouping/columns/compatibility.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "grouping/column_loops.h"
+#include "grouping/columns/column_loops.h"
 
 namespace corral {
 

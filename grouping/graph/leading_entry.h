@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "grouping/principal_eigenvector.h"
+#include "grouping/graph/principal_eigenvector.h"
 
 namespace corral {
 

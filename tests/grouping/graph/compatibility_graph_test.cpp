@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/compatibility_graph.h"
+#include "grouping/graph/compatibility_graph.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "grouping/compatibility.h"
+#include "grouping/columns/compatibility.h"
 #include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/tables.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/leading_entry.h"
+#include "grouping/graph/leading_entry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

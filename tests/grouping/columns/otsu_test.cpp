@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/otsu.h"
+#include "grouping/columns/otsu.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/otsu.h"
+#include "grouping/columns/otsu.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "grouping/column_loops.h"
-#include "grouping/compatibility.h"
+#include "grouping/columns/column_loops.h"
+#include "grouping/columns/compatibility.h"
 #include "kernel/error.h"
 
 namespace corral {

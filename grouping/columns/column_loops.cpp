@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/column_loops.h"
+#include "grouping/columns/column_loops.h"
 
 #include <cmath>
 #include <limits>
 
-#include "grouping/compatibility.h"
+#include "grouping/columns/compatibility.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "grouping/column_loops.cpp"
+#define HWY_TARGET_INCLUDE "grouping/columns/column_loops.cpp"
 #include <hwy/foreach_target.h>
 
 #include "kernel/lanes-inl.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/subset_sums.h"
+#include "grouping/graph/subset_sums.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "grouping/subset_sums.cpp"
+#define HWY_TARGET_INCLUDE "grouping/graph/subset_sums.cpp"
 #include <hwy/foreach_target.h>
 
 #include "kernel/lanes-inl.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/principal_eigenvector.h"
+#include "grouping/graph/principal_eigenvector.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What floats call certain must be so in double, what is so in double they must call possible, and they must leave little
 // undecided.
-#include "grouping/filter.h"
+#include "grouping/columns/filter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "grouping/compatibility.h"
-#include "grouping/filter_loops.h"
+#include "grouping/columns/compatibility.h"
+#include "grouping/columns/filter_loops.h"
 #include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/table_changes.h"

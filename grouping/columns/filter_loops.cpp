@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Compiled with contraction: a multiplication and an addition may be one instruction.
-#include "grouping/filter_loops.h"
+#include "grouping/columns/filter_loops.h"
 
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "grouping/filter_loops.cpp"
+#define HWY_TARGET_INCLUDE "grouping/columns/filter_loops.cpp"
 #include <hwy/foreach_target.h>
 
 #include "kernel/lanes-inl.h"

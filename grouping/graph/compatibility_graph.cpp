@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/compatibility_graph.h"
+#include "grouping/graph/compatibility_graph.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "grouping/compatibility.h"
-#include "grouping/filter_loops.h"
-#include "grouping/subset_sums.h"
+#include "grouping/columns/compatibility.h"
+#include "grouping/columns/filter_loops.h"
+#include "grouping/graph/subset_sums.h"
 
 namespace corral {
 namespace {

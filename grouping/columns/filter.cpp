@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "grouping/filter.h"
+#include "grouping/columns/filter.h"
 
 #include <algorithm>
 #include <cmath>
