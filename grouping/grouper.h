@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "kernel/correspondence_set.h"
@@ -11,11 +13,26 @@
 
 namespace corral {
 
+/// A pose that a grouper considered, and how good it took it to be.
+struct ScoredPose {
+  RigidTransform target_from_source;
+  double score = 0;  ///< larger is better
+};
+
+/// A number that says how a result came about, such as how often a bound was reached.
+struct Note {
+  std::string name;  ///< "steps", "halvings"
+  std::int64_t count = 0;
+};
+
 /// The result of a grouper.
 struct GroupingResult {
   Indices selected;            ///< rows it keeps, strictly ascending; may be empty
   std::vector<double> scores;  ///< one per match, larger is better; empty if the grouper computes none
   std::optional<RigidTransform> target_from_source;  ///< the grouper's own pose; absent if it estimates none
+  std::vector<ScoredPose>
+      runner_up;            ///< poses far from the chosen one and from each other, the best first; if asked for
+  std::vector<Note> notes;  ///< empty if there is nothing to say
 };
 
 // With each grouper is declared

@@ -35,11 +35,12 @@ const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "ap
                                              "apps/dataset", "apps/results", "apps/study", "apps/claims",
                                              "apps/report",  "apps/commands"};
 
-/// Rooms by folder; the longest that fits a file is its room.
+/// Rooms by folder, or by file; the longest that fits a file is its room.
 std::map<std::string, Room> make_rooms() {
   const std::string surface = "kernel/surface", mesh = surface + "/mesh", search = surface + "/search",
                     matching = surface + "/matching", scan = surface + "/scan";
-  const std::string columns = "grouping/columns", graph = "grouping/graph";
+  const std::string result = "grouping/grouper.h", columns = "grouping/columns", graph = "grouping/graph",
+                    pose = "grouping/pose";
   const Names all_of_surface = {surface, mesh, search, matching, scan};
   std::map<std::string, Room> rooms = {
       {"kernel", {{"kernel"}, {"Eigen", "hwy"}}},
@@ -47,9 +48,11 @@ std::map<std::string, Room> make_rooms() {
       {search, {{"kernel", mesh, search}, kSurfaceLibraries}},
       {matching, {{"kernel", matching}, kSurfaceLibraries}},
       {scan, {{"kernel", mesh, search, scan}, kSurfaceLibraries}},
-      {columns, {{"kernel", columns}, {"Eigen", "hwy"}}},
-      {graph, {{"kernel", columns, graph}, {"Eigen", "hwy"}}},
-      {"grouping", {{"kernel", columns, graph, "grouping"}, {"Eigen", "hwy"}}},
+      {result, {{"kernel"}, {}}},
+      {columns, {{"kernel", result, columns}, {"Eigen", "hwy"}}},
+      {graph, {{"kernel", result, columns, graph}, {"Eigen", "hwy"}}},
+      {pose, {{"kernel", result, columns, pose}, {"Eigen", "hwy"}}},
+      {"grouping", {{"kernel", result, columns, graph, pose, "grouping"}, {"Eigen", "hwy"}}},
       {"refine", {{"kernel", "refine"}, {"Eigen", "hwy", "ceres"}}},
   };
   Room pipeline{all_of_surface, kSurfaceLibraries}, io{all_of_surface, {"Eigen", "nlohmann", "toml++"}};
@@ -57,7 +60,7 @@ std::map<std::string, Room> make_rooms() {
   io.includes.insert({"kernel", "io"});
   rooms[surface] = pipeline;
   rooms["io"] = io;
-  Names below = {"kernel", "grouping", columns, graph, "refine", "io"};
+  Names below = {"kernel", "grouping", result, columns, graph, pose, "refine", "io"};
   below.insert(all_of_surface.begin(), all_of_surface.end());
   for (const std::string& floor : kAppFloors) {
     below.insert(floor);
@@ -68,7 +71,7 @@ std::map<std::string, Room> make_rooms() {
   under_figures.erase("apps/report");  // figures know no report
   rooms["apps/report/figure"] = {under_figures, kAppLibraries};
   rooms["apps/report/figure"].libraries.insert("fontconfig");  // measures text
-  rooms["apps"] = {below, kAppLibraries};  // the program itself
+  rooms["apps"] = {below, kAppLibraries};                      // the program itself
   return rooms;
 }
 const std::map<std::string, Room> kRooms = make_rooms();
@@ -92,7 +95,7 @@ std::string read(const fs::path& path) {
 std::string room_of(const std::string& file) {
   std::string best;
   for (const auto& [room, rules] : kRooms)
-    if (file.rfind(room + "/", 0) == 0 && room.size() > best.size()) best = room;
+    if ((file == room || file.rfind(room + "/", 0) == 0) && room.size() > best.size()) best = room;
   return best;
 }
 

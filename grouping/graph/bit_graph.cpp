@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "grouping/graph/bit_graph.h"
+
+#include <hwy/base.h>
+
+#include <cmath>
+
+#include "grouping/columns/compatibility.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "grouping/graph/bit_graph.cpp"
+#include <hwy/foreach_target.h>
+
+#include "kernel/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace corral::HWY_NAMESPACE {
+namespace {
+
+/// The bits that two nodes have in common.
+HWY_INLINE std::uint64_t count_shared(const std::uint64_t* a, const std::uint64_t* b, std::size_t words) {
+  const hn::ScalableTag<std::uint64_t> tag;
+  const std::size_t lanes = hn::Lanes(tag);
+  auto sums = hn::Zero(tag);
+  std::size_t word = 0;
+  for (; word + lanes <= words; word += lanes)
+    sums = hn::Add(sums, hn::PopulationCount(hn::And(hn::LoadU(tag, a + word), hn::LoadU(tag, b + word))));
+  std::uint64_t count = hn::GetLane(hn::SumOfLanes(tag, sums));
+  for (; word < words; ++word) count += hwy::PopCount(a[word] & b[word]);
+  return count;
+}
+
+HWY_FLATTEN void count_common(const BitGraph& graph, int node, const Indices& others, int* counts) {
+  for (std::size_t k = 0; k < others.size(); ++k)
+    counts[k] = static_cast<int>(
+        count_shared(graph.neighbors(node), graph.neighbors(others[k]), static_cast<std::size_t>(graph.words())));
+}
+
+/// Lengths from one row, in the two clouds.
+struct Lengths {
+  const CorrespondenceSet& matches;
+  int row;
+
+  HWY_INLINE Lanes from(const Points& points, int j) const {
+    const Lanes x = Lanes::fill(points(row, 0)) - Lanes::load(points.col(0).data() + j),
+                y = Lanes::fill(points(row, 1)) - Lanes::load(points.col(1).data() + j),
+                z = Lanes::fill(points(row, 2)) - Lanes::load(points.col(2).data() + j);
+    return square_root(x * x + y * y + z * z);
+  }
+
+  /// One bit for each of eight rows from j on.
+  HWY_INLINE std::uint64_t consistent(int j, double tolerance, double shortest) const {
+    const Lanes source = from(matches.source_points, j), target = from(matches.target_points, j);
+    return bits(magnitude(source - target) < Lanes::fill(tolerance)) & bits(Lanes::fill(shortest) < source + target);
+  }
+  std::uint64_t is_consistent(int j, double tolerance, double shortest) const {
+    const PairDistances lengths = pair_distances(matches, row, j);
+    return std::abs(lengths.source - lengths.target) < tolerance && shortest < lengths.source + lengths.target;
+  }
+};
+
+/// The bits of the row itself and of those behind it; what is before is not set.
+HWY_FLATTEN void compare_behind(const CorrespondenceSet& matches, int row, double tolerance, double shortest,
+                                std::uint64_t* words) {
+  const Lengths lengths{matches, row};
+  for (int first = row & ~63; first < matches.size(); first += 64) {
+    std::uint64_t word = 0;
+    for (int j = first; j < first + 64 && j < matches.size(); j += kLanes) {
+      if (j + kLanes <= matches.size())
+        word |= lengths.consistent(j, tolerance, shortest) << (j - first);
+      else
+        for (int k = j; k < matches.size(); ++k) word |= lengths.is_consistent(k, tolerance, shortest) << (k - first);
+    }
+    words[first / 64] = word;
+  }
+  words[row >> 6] &= ~((std::uint64_t{2} << (row & 63)) - 1);
+}
+
+}  // namespace
+}  // namespace corral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace corral {
+
+HWY_EXPORT(count_common);
+HWY_EXPORT(compare_behind);
+
+int BitGraph::degree(int node) const {
+  int count = 0;
+  for (int word = 0; word < words_; ++word) count += static_cast<int>(hwy::PopCount(neighbors(node)[word]));
+  return count;
+}
+
+void BitGraph::count_common(int node, const Indices& others, int* counts) const {
+  HWY_DYNAMIC_DISPATCH(count_common)(*this, node, others, counts);
+}
+
+BitGraph consistency_graph(const CorrespondenceSet& matches, double tolerance, double shortest) {
+  BitGraph graph(matches.size());
+  std::vector<BitGraph::Word> behind(static_cast<std::size_t>(graph.words()));
+  for (int row = 0; row < graph.size(); ++row) {
+    HWY_DYNAMIC_DISPATCH(compare_behind)(matches, row, tolerance, shortest, behind.data());
+    for (int word = row >> 6; word < graph.words(); ++word)
+      graph.bits_[graph.start(row) + static_cast<std::size_t>(word)] |= behind[static_cast<std::size_t>(word)];
+    BitGraph::for_bits(behind.data() + (row >> 6), graph.words() - (row >> 6),
+                       [&](int place) { graph.set((row & ~63) + place, row); });
+  }
+  return graph;
+}
+
+}  // namespace corral
+#endif

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "grouping/graph/bit_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "grouping/columns/compatibility.h"
+#include "tests/support/tables.h"
+
+namespace corral {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(BitGraph, NeighborsComeInOrder) {
+  BitGraph graph(200);
+  for (const int other : {150, 3, 63, 64, 199}) graph.connect(100, other);
+  Indices seen;
+  graph.for_neighbors(100, [&](int node) { seen.push_back(node); });
+  EXPECT_THAT(seen, ElementsAre(3, 63, 64, 150, 199));
+  EXPECT_EQ(graph.degree(100), 5);
+  EXPECT_TRUE(graph.is_edge(199, 100));
+  graph.disconnect(199, 100);
+  EXPECT_FALSE(graph.is_edge(100, 199) || graph.is_edge(199, 100));
+}
+
+TEST(BitGraph, EveryBitIsFound) {
+  BitGraph graph(65);
+  for (int node = 0; node < 64; ++node) {
+    graph.connect(64, node);
+    Indices seen;
+    graph.for_neighbors(64, [&](int other) { seen.push_back(other); });
+    EXPECT_THAT(seen, ElementsAre(node));
+    graph.disconnect(64, node);
+  }
+}
+
+TEST(ConsistencyGraph, IsThatOfThePlainForm) {
+  for (const int rows : {0, 1, 2, 63, 64, 65, 130, 300})
+    for (const double shortest : {-1.0, 40.0}) {
+      const CorrespondenceSet table = testing::harsh_table(rows, 0.4, 7);
+      const BitGraph graph = consistency_graph(table, 2, shortest);
+      Indices others;
+      for (int j = 0; j < rows; ++j) others.push_back(j);
+      Indices common(others.size());
+      for (int i = 0; i < rows; ++i) {
+        int degree = 0;
+        for (int j = 0; j < rows; ++j) {
+          const PairDistances lengths = pair_distances(table, i, j);
+          const bool expected =
+              i != j && std::abs(lengths.source - lengths.target) < 2 && lengths.source + lengths.target > shortest;
+          ASSERT_EQ(graph.is_edge(i, j), expected) << i << " " << j;
+          degree += expected;
+        }
+        EXPECT_EQ(graph.degree(i), degree);
+        graph.count_common(i, others, common.data());
+        for (int j = 0; j < rows; ++j) {
+          int expected = 0;
+          for (int k = 0; k < rows; ++k) expected += graph.is_edge(i, k) && graph.is_edge(j, k);
+          ASSERT_EQ(common[static_cast<std::size_t>(j)], expected);
+        }
+      }
+    }
+}
+
+}  // namespace
+}  // namespace corral
