@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/registry.h"
 
+#include "grouping/consistency_voting.h"
+#include "grouping/game_theory.h"
 #include "grouping/geometric_consistency.h"
 #include "grouping/hough_voting.h"
 #include "grouping/nearest_neighbor_ratio.h"
@@ -8,6 +10,7 @@
 #include "grouping/search_of_inliers.h"
 #include "grouping/similarity_score.h"
 #include "grouping/spectral.h"
+#include "grouping/tcf.h"
 
 namespace corral {
 namespace {
@@ -42,6 +45,12 @@ const std::vector<Grouper>& groupers() {
             group_by_hough_voting),
       entry("si", "Search of inliers (SI)", "votes of near and of distinctive matches", "buch2014search",
             group_by_search_of_inliers),
+      entry("tcf", "Two-stage consensus filtering (TCF)", "consensus on one match, two, three, then a robust fit",
+            "shi2024tcf", group_by_tcf),
+      entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners", "rodola2013scale",
+            group_by_game_theory),
+      entry("cv", "Consistency voting (CV)", "lengths and frames agree with a few distinctive matches",
+            "yang2021performance", group_by_consistency_voting),
   };
   return table;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -34,8 +35,11 @@ std::vector<std::string> names() {
   for (const Grouper& grouper : groupers()) all.push_back(grouper.name);
   return all;
 }
-INSTANTIATE_TEST_SUITE_P(Groupers, GrouperContract, ::testing::ValuesIn(names()),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Groupers, GrouperContract, ::testing::ValuesIn(names()), [](const auto& test) {
+  std::string name = test.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 TEST(Registry, BeginsWithTheSevenGroupersInTheOrderOfThePaper) {
   std::vector<std::string> first = names();
@@ -81,7 +85,7 @@ TEST_P(GrouperContract, EasyProblemIsSolved) {
 }
 
 TEST_P(GrouperContract, PoseSolvesTheEasyProblem) {
-  const std::set<std::string> without_pose = {"ss", "nnsr", "st", "gc", "hough", "si"};
+  const std::set<std::string> without_pose = {"ss", "nnsr", "st", "gc", "hough", "si", "gtm", "cv"};
   const SyntheticProblem problem = easy_problem(4);
   const auto pose = group(problem.matches).target_from_source;
   EXPECT_NE(pose.has_value(), without_pose.count(GetParam()) > 0);

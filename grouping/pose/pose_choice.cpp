@@ -151,14 +151,13 @@ double PoseChoice::memory(int rows, double hypotheses, const PoseRule& rule) {
          (keeps_all ? 3 * sizeof(Judged) * hypotheses : 0);
 }
 
-void PoseChoice::offer(const RigidTransform& target_from_source) {
-  if (keeps_all()) {
-    poses_.push_back(judge(target_from_source));
-    return;
-  }
-  if (!poses_.empty() && is_hopeless(target_from_source)) return;
+bool PoseChoice::offer(const RigidTransform& target_from_source) {
+  if (!keeps_all() && best_ && is_hopeless(target_from_source)) return false;
   const Judged judged = judge(target_from_source);
-  if (poses_.empty() || is_better(judged, poses_.front())) poses_.assign(1, judged);
+  if (keeps_all()) poses_.push_back(judged);
+  if (best_ && !is_better(judged, *best_)) return false;
+  best_ = judged;
+  return true;
 }
 
 PoseChoice::Judged PoseChoice::judge(const RigidTransform& target_from_source) {
@@ -168,7 +167,7 @@ PoseChoice::Judged PoseChoice::judge(const RigidTransform& target_from_source) {
 
 /// No score exceeds the number of rows that possibly agree.
 bool PoseChoice::is_hopeless(const RigidTransform& target_from_source) const {
-  const int hopeless = static_cast<int>(std::ceil(poses_.front().score)) - 1;
+  const int hopeless = static_cast<int>(std::ceil(best_->score)) - 1;
   const PoseFilter pose(table_, target_from_source, tolerance_);
   return count_near(table_, pose, matches_.size(), hopeless) <= hopeless;
 }
@@ -181,11 +180,11 @@ void PoseChoice::judge_by_distances() {
 }
 
 GroupingResult PoseChoice::finish() {
-  if (poses_.empty()) return {};
+  if (!best_) return {};
   if (rule_.score == PoseScore::Fs) judge_by_distances();
   std::stable_sort(poses_.begin(), poses_.end(), is_better);
-  const RigidTransform chosen =
-      refit(matches_, poses_.front().target_from_source, scorer_, tolerance_, rule_.refit_rounds);
+  const Judged& best = poses_.empty() ? *best_ : poses_.front();
+  const RigidTransform chosen = refit(matches_, best.target_from_source, scorer_, tolerance_, rule_.refit_rounds);
   measure_residuals(matches_, chosen, residuals_);
   GroupingResult result;
   result.selected = rows_within(residuals_, tolerance_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "grouping/columns/filter.h"
@@ -44,9 +45,9 @@ class PoseChoice {
   /// Bytes for so many rows and hypotheses.
   static double memory(int rows, double hypotheses, const PoseRule& rule);
 
-  /// The next hypothesis. A pose that cannot be chosen is dropped as soon as floats are certain of it, unless `keep` or
+  /// The next hypothesis; says whether it is the best so far (by Fs: by Inliers). A pose that cannot be chosen is dropped as soon as floats are certain of it, unless `keep` or
   /// Fs need them all.
-  void offer(const RigidTransform& target_from_source);
+  bool offer(const RigidTransform& target_from_source);
 
   /// The chosen pose after refit(), the rows below tau of it, and the runners-up: of the other hypotheses in the order of the
   /// choice those whose mean displacement of the source points is above 10 pr from the chosen pose and from all before.
@@ -73,7 +74,8 @@ class PoseChoice {
   const FilterTable table_;
   const PoseScorer scorer_, mae_;
   std::vector<double> residuals_;
-  std::vector<Judged> poses_;  ///< the best alone, unless all are kept
+  std::optional<Judged> best_;
+  std::vector<Judged> poses_;  ///< all, if they are needed
 };
 
 }  // namespace corral

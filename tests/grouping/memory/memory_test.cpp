@@ -78,11 +78,14 @@ INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
                                            Case{"st", {{"once", "true"}}}, Case{"st", {{"weighted", "true"}}},
                                            Case{"gc", {}}, Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
                                            Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
-                                           Case{"si", {{"form", "covis"}}}));
+                                           Case{"si", {{"form", "covis"}}}, Case{"tcf", {}},
+                                           Case{"tcf", {{"keep", "3"}, {"max_trials", "50"}}}, Case{"gtm", {}},
+                                           Case{"cv", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
   const ConfiguredGrouper grouper = find_grouper(GetParam().method).configure(GetParam().options);
-  const bool is_quadratic = std::string(GetParam().method) == "st" || GetParam().options.count("cluster") > 0;
+  const bool is_quadratic = std::string(GetParam().method) == "st" || std::string(GetParam().method) == "gtm" ||
+                            GetParam().options.count("cluster") > 0;
   for (const int rows : {0, 1, 10, 100, 700, is_quadratic ? 1500 : 8000})
     for (const double inlier_ratio : {0.1, 0.9}) {
       const CorrespondenceSet matches = testing::synthetic(rows, inlier_ratio, 1).matches;
