@@ -55,6 +55,17 @@ const std::vector<Grouper>& groupers() {
   return table;
 }
 
+std::vector<std::string> expand_groupers(const std::vector<std::string>& names) {
+  constexpr std::size_t kOfThePaper = 7;
+  std::vector<std::string> expanded;
+  for (const std::string& name : names) {
+    const std::size_t count = name == "paper" ? kOfThePaper : name == "all" ? groupers().size() : 0;
+    for (std::size_t i = 0; i < count; ++i) expanded.push_back(groupers()[i].name);
+    if (count == 0) expanded.push_back(name);
+  }
+  return expanded;
+}
+
 const Grouper& find_grouper(const std::string& name) { return find_entry(groupers(), "grouper", name); }
 
 }  // namespace corral

@@ -47,6 +47,12 @@ TEST(Registry, BeginsWithTheSevenGroupersInTheOrderOfThePaper) {
   EXPECT_THAT(first, ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si"));
 }
 
+TEST(Registry, WordsStandForSeveralNames) {
+  EXPECT_EQ(expand_groupers({"all"}), names());
+  EXPECT_THAT(expand_groupers({"paper", "tcf", "mine"}),
+              ::testing::ElementsAre("ss", "nnsr", "ransac", "st", "gc", "hough", "si", "tcf", "mine"));
+}
+
 TEST(Registry, UnknownNameListsTheKnownOnes) {
   const std::string text = refusal_of([] { find_grouper("pcl"); });
   EXPECT_THAT(text, HasSubstr("pcl"));

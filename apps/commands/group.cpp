@@ -132,7 +132,7 @@ void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper, or all, on a table of matches");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("-m,--method", settings->method, "all, or names between commas: " + names_of(groupers(), ","))
+  command->add_option("-m,--method", settings->method, "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
       ->required();
   add_set_option(*command, settings->set);
   command

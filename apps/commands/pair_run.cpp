@@ -73,14 +73,13 @@ void compare_sides(PairRun& run, const Surfaces& surfaces, const MatchSettings& 
 }  // namespace
 
 std::vector<std::string> method_names(const std::string& text) {
-  std::vector<std::string> names;
-  if (text == "all") {
-    for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
-    return names;
-  }
+  std::vector<std::string> words, names;
   std::istringstream stream(text + ",");
-  for (std::string name; std::getline(stream, name, ',');) {
-    if (name.empty()) throw UsageError("--methods " + text + ": expected all, or names such as ss,gc");
+  for (std::string word; std::getline(stream, word, ',');) {
+    if (word.empty()) throw UsageError("--methods " + text + ": expected all, paper, or names such as ss,gc");
+    words.push_back(word);
+  }
+  for (const std::string& name : expand_groupers(words)) {
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw UsageError("--methods: " + name + " occurs twice");
     names.push_back(name);

@@ -28,7 +28,7 @@ struct RunSettings {
   bool drop_stray = false, dense = false, explain = false, json = false, verbose = false;
 };
 
-/// "all" or names of groupers between commas, each once. Throws UsageError.
+/// Names of groupers between commas, each once; "all" and "paper" as expand_groupers() takes them. Throws UsageError.
 std::vector<std::string> method_names(const std::string& text);
 
 /// What came of it.

@@ -60,7 +60,7 @@ void add_run(CLI::App& app, Action& action) {
                    "A table of matches to group, alone or beside the two meshes (which then only judge poses)")
       ->type_name("FILE");
   add_truth_options(*command, settings->truth, ": adds scores and errors");
-  command->add_option("--methods", settings->methods, "all, or names between commas: " + names_of(groupers(), ","))
+  command->add_option("--methods", settings->methods, "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")

@@ -21,12 +21,6 @@ const EmbeddedFiles& embedded_experiments();
 
 namespace {
 
-std::vector<std::string> method_names() {
-  std::vector<std::string> names;
-  for (const Grouper& grouper : groupers()) names.push_back(grouper.name);
-  return names;
-}
-
 /// Whether an option takes one of several words.
 bool is_choice(const std::string& option) {
   const auto [name, field] = split_option(option);
@@ -58,7 +52,7 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
 }
 
 void check_method(const TomlTable& table, const std::string& key, const std::string& method) {
-  if (!look_up(groupers(), method)) fail_unknown(table, key, method, method_names());
+  if (!look_up(groupers(), method)) fail_unknown(table, key, method, expand_groupers({"all"}));
 }
 
 /// A grouper, detector or descriptor.
@@ -233,8 +227,8 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   info.axis = table.text("axis").value_or(info.attribute);
   experiment.sweep = sweep_of(table, info.attribute);
   info.levels = read_levels(table, experiment);
-  info.methods = table.texts("groupers");
-  if (info.methods.empty()) info.methods = method_names();
+  info.methods = expand_groupers(table.texts("groupers"));
+  if (info.methods.empty()) info.methods = expand_groupers({"paper"});
   for (std::size_t i = 0; i < info.methods.size(); ++i) {
     check_method(table, "groupers", info.methods[i]);
     if (std::count(info.methods.begin(), info.methods.end(), info.methods[i]) > 1)

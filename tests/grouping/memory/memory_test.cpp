@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
                                            Case{"gc", {}}, Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
                                            Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
                                            Case{"si", {{"form", "covis"}}}, Case{"tcf", {}},
-                                           Case{"tcf", {{"keep", "3"}, {"max_trials", "50"}}}, Case{"gtm", {}},
+                                           Case{"tcf", {{"keep", "3"}, {"max_trials", "20"}}}, Case{"gtm", {}},
                                            Case{"cv", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
