@@ -145,16 +145,16 @@ PoseChoice::PoseChoice(const CorrespondenceSet& matches, const PoseRule& rule)
       mae_(matches, PoseScore::Mae, tolerance_) {}
 
 double PoseChoice::memory(int rows, double hypotheses, const PoseRule& rule) {
-  const bool keeps_all = rule.keep > 0 || rule.score == PoseScore::Fs;
+  const bool needs_all = rule.keep > 0 || rule.score == PoseScore::Fs;
   const double points = rule.score == PoseScore::Fs ? 80.0 * rows : 0, moved = rule.keep > 0 ? 96.0 * rows : 0;
   return FilterTable::memory(rows) + PoseScorer::memory(rows) + 32.0 * rows + points + moved +
-         (keeps_all ? 3 * sizeof(Judged) * hypotheses : 0);
+         (needs_all ? 3 * sizeof(Judged) * hypotheses : 0);
 }
 
 bool PoseChoice::offer(const RigidTransform& target_from_source) {
-  if (!keeps_all() && best_ && is_hopeless(target_from_source)) return false;
+  if (!needs_all() && best_ && is_hopeless(target_from_source)) return false;
   const Judged judged = judge(target_from_source);
-  if (keeps_all()) poses_.push_back(judged);
+  if (needs_all()) poses_.push_back(judged);
   if (best_ && !is_better(judged, *best_)) return false;
   best_ = judged;
   return true;
@@ -162,12 +162,12 @@ bool PoseChoice::offer(const RigidTransform& target_from_source) {
 
 PoseChoice::Judged PoseChoice::judge(const RigidTransform& target_from_source) {
   measure_residuals(matches_, target_from_source, residuals_);
-  return {target_from_source, scorer_(residuals_), mae_(residuals_)};
+  return {target_from_source, scorer_(residuals_), rule_.first_wins ? 0 : mae_(residuals_)};
 }
 
 /// No score exceeds the number of rows that possibly agree.
 bool PoseChoice::is_hopeless(const RigidTransform& target_from_source) const {
-  const int hopeless = static_cast<int>(std::ceil(best_->score)) - 1;
+  const int hopeless = static_cast<int>(rule_.first_wins ? std::floor(best_->score) : std::ceil(best_->score) - 1);
   const PoseFilter pose(table_, target_from_source, tolerance_);
   return count_near(table_, pose, matches_.size(), hopeless) <= hopeless;
 }
@@ -188,7 +188,7 @@ GroupingResult PoseChoice::finish() {
   measure_residuals(matches_, chosen, residuals_);
   GroupingResult result;
   result.selected = rows_within(residuals_, tolerance_);
-  if (result.selected.size() < 3) return {};
+  if (static_cast<int>(result.selected.size()) < rule_.fewest) return {};
   result.target_from_source = chosen;
   for (const Judged& pose : poses_) {
     if (static_cast<int>(result.runner_up.size()) == rule_.keep) break;

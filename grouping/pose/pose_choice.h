@@ -16,6 +16,8 @@ struct PoseRule {
   double tolerance_pr = 5;  ///< tau
   int refit_rounds = 0;     ///< of refit() from the chosen pose
   int keep = 0;             ///< poses returned beside it
+  bool first_wins = false;  ///< of equal scores the first offered is the best, not that of the larger mae
+  int fewest = 3;           ///< rows below tau that a pose needs
 };
 
 /// Better poses by iterated weighted fits to the rows that agree with the last:
@@ -45,13 +47,19 @@ class PoseChoice {
   /// Bytes for so many rows and hypotheses.
   static double memory(int rows, double hypotheses, const PoseRule& rule);
 
+  /// Whether every hypothesis must be offered: those that cannot be the best too.
+  bool needs_all() const { return rule_.keep > 0 || rule_.score == PoseScore::Fs; }
+
+  /// Above this score a hypothesis is the best so far; -1 before the first.
+  double best_score() const { return best_ ? best_->score : -1; }
+
   /// The next hypothesis; says whether it is the best so far (by Fs: by Inliers). A pose that cannot be chosen is dropped as soon as floats are certain of it, unless `keep` or
   /// Fs need them all.
   bool offer(const RigidTransform& target_from_source);
 
   /// The chosen pose after refit(), the rows below tau of it, and the runners-up: of the other hypotheses in the order of the
   /// choice those whose mean displacement of the source points is above 10 pr from the chosen pose and from all before.
-  /// Fewer than 3 rows below tau: nothing, no pose.
+  /// Fewer than `fewest` rows below tau: nothing, no pose.
   GroupingResult finish();
 
  private:
@@ -65,7 +73,6 @@ class PoseChoice {
 
   Judged judge(const RigidTransform& target_from_source);
   bool is_hopeless(const RigidTransform& target_from_source) const;
-  bool keeps_all() const { return rule_.keep > 0 || rule_.score == PoseScore::Fs; }
   void judge_by_distances();
 
   const CorrespondenceSet& matches_;

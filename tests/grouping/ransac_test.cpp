@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "grouping/pose/pose_score.h"
 #include "tests/support/tables.h"
 
 namespace corral {
@@ -209,6 +210,84 @@ TEST(Ransac, NoConfidenceIsEnoughForTheWholeSearch) {
   const Indices all = group_by_ransac(matches, options).selected;
   options.confidence = 1;
   EXPECT_EQ(group_by_ransac(matches, options).selected, all);
+}
+
+RansacOptions parsed(const OptionOverrides& overrides) { return parse_options<RansacOptions>(overrides, "ransac"); }
+
+double score_of(const CorrespondenceSet& matches, PoseScore score, const GroupingResult& result) {
+  std::vector<double> residuals;
+  measure_residuals(matches, result.target_from_source.value(), residuals);
+  return PoseScorer(matches, score, 5 * matches.resolution)(residuals);
+}
+
+TEST(Ransac, TheScoreThatIsAskedForIsTheLargest) {
+  const std::vector<std::string> scores = {"inliers", "mae", "mse", "msac", "oamae"};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const CorrespondenceSet matches = testing::synthetic(150, 0.2, seed).matches;
+    std::vector<GroupingResult> found;
+    for (const std::string& score : scores)
+      found.push_back(group_by_ransac(matches, parsed({{"score", score}, {"iterations", "2000"}})));
+    for (std::size_t i = 0; i < scores.size(); ++i)
+      for (const GroupingResult& other : found)
+        EXPECT_GE(score_of(matches, static_cast<PoseScore>(i), found[i]),
+                  score_of(matches, static_cast<PoseScore>(i), other));
+  }
+}
+
+TEST(Ransac, LocalRoundsDoNotLowerTheScore) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const CorrespondenceSet matches = testing::synthetic(200, 0.15, seed).matches;
+    const OptionOverrides plain = {{"score", "mae"}, {"iterations", "1000"}};
+    OptionOverrides local = plain;
+    local["local_rounds"] = "10";
+    EXPECT_GE(score_of(matches, PoseScore::Mae, group_by_ransac(matches, parsed(local))),
+              score_of(matches, PoseScore::Mae, group_by_ransac(matches, parsed(plain))));
+  }
+}
+
+/// Rows 0 to 2 are carried rigidly, the edges between them and row 3 are in the ratio 0.5 at best.
+TEST(Ransac, TriplesWithAnEdgeThatChangesAreDropped) {
+  const CorrespondenceSet matches = table_of_points({{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {5, 5, 1}},
+                                                    {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {40, 40, 40}});
+  EXPECT_THAT(group_by_ransac(matches, parsed({{"edge_similarity", "0.9"}})).selected, ElementsAre(0, 1, 2));
+  CorrespondenceSet stretched = matches;
+  stretched.target_points *= 0.85;
+  EXPECT_THAT(group_by_ransac(stretched, parsed({{"edge_similarity", "0.9"}})).selected, IsEmpty());
+  EXPECT_THAT(group_by_ransac(stretched, parsed({{"edge_similarity", "0.8"}})).selected, ElementsAre(0, 1, 2));
+}
+
+TEST(Ransac, DistinctiveMatchesFirstNeedFewerTriples) {
+  const SyntheticProblem problem = testing::synthetic(1000, 0.1, 3);
+  const OptionOverrides few = {{"iterations", "200"}};
+  OptionOverrides progressive = few;
+  progressive["sampling"] = "prosac";
+  int uniform_found = 0, progressive_found = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    OptionOverrides a = few, b = progressive;
+    a["seed"] = b["seed"] = std::to_string(seed);
+    uniform_found += group_by_ransac(problem.matches, parsed(a)).selected.size() > 80;
+    progressive_found += group_by_ransac(problem.matches, parsed(b)).selected.size() > 80;
+  }
+  EXPECT_GT(progressive_found, uniform_found);
+  CorrespondenceSet without = problem.matches;
+  without.second_feature_distance.resize(0);
+  EXPECT_THAT(refusal_of([&] { group_by_ransac(without, parsed(progressive)); }), HasSubstr("second_feature_distance"));
+}
+
+TEST(Ransac, KeptPosesDoNotChangeTheChoice) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const CorrespondenceSet matches = testing::harsh_table(120, 0.1, seed);
+    const GroupingResult alone = group_by_ransac(matches, parsed({{"iterations", "500"}})),
+                         kept = group_by_ransac(matches, parsed({{"iterations", "500"}, {"keep", "4"}}));
+    EXPECT_EQ(kept.selected, alone.selected);
+    EXPECT_EQ(kept.runner_up.size(), 4U);
+    for (std::size_t i = 0; i < kept.runner_up.size(); ++i) {
+      EXPECT_LE(kept.runner_up[i].score, static_cast<double>(kept.selected.size()));
+      if (i > 0) {
+        EXPECT_LE(kept.runner_up[i].score, kept.runner_up[i - 1].score);
+      }
+    }
+  }
 }
 
 }  // namespace

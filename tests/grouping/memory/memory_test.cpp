@@ -74,12 +74,13 @@ class WorkingMemory : public ::testing::TestWithParam<Case> {};
 
 INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
                          ::testing::Values(Case{"ss", {}}, Case{"ss", {{"otsu", "bins100"}}}, Case{"nnsr", {}},
-                                           Case{"ransac", {{"iterations", "500"}}}, Case{"st", {}},
-                                           Case{"st", {{"once", "true"}}}, Case{"st", {{"weighted", "true"}}},
-                                           Case{"gc", {}}, Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
+                                           Case{"ransac", {{"iterations", "500"}}},
+                                           Case{"ransac", {{"iterations", "500"}, {"sampling", "prosac"}}},
+                                           Case{"st", {}}, Case{"st", {{"once", "true"}}},
+                                           Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
+                                           Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
                                            Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
-                                           Case{"si", {{"form", "covis"}}}, Case{"tcf", {}},
-                                           Case{"tcf", {{"keep", "3"}, {"max_trials", "20"}}}, Case{"gtm", {}},
+                                           Case{"si", {{"form", "covis"}}}, Case{"tcf", {}}, Case{"gtm", {}},
                                            Case{"cv", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
