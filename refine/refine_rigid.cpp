@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/error.h"
 #include "refine/rigid_descent.h"
@@ -157,6 +158,14 @@ RefinedPose refine_rigid(const CorrespondenceSet& matches, const Indices& rows, 
   if (found.is_usable && describe(found, centred, loss, matches.resolution, refined))
     refined.status = RefineStatus::Refined;
   return refined;
+}
+
+RefinedPose refine_over_all(const CorrespondenceSet& matches, const RigidTransform& start) {
+  Indices all(static_cast<std::size_t>(matches.size()));
+  std::iota(all.begin(), all.end(), 0);
+  RefineOptions options;
+  options.loss = RobustLoss::Tukey;
+  return refine_rigid(matches, all, options, start);
 }
 
 }  // namespace corral

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "kernel/error.h"
+#include "kernel/evaluation.h"
 #include "kernel/random.h"
 #include "tests/refine/refine_problems.h"
 #include "tests/support/table_changes.h"
@@ -285,6 +286,21 @@ TEST(RefineStatusText, IsWhatTheHeaderSays) {
   EXPECT_STREQ(to_text(RefineStatus::TooFewRows), "too few rows");
   EXPECT_STREQ(to_text(RefineStatus::DegenerateGeometry), "degenerate geometry");
   EXPECT_STREQ(to_text(RefineStatus::Diverged), "diverged");
+}
+
+TEST(RefineOverAll, TakesWhatTheSelectionMissedAndDropsWhatItHeldWrongly) {
+  const SyntheticProblem made = testing::synthetic(300, 0.3, 11);
+  RigidTransform start = made.truth;
+  start.translation += Eigen::Vector3d(2, 0, 0);
+  const RefinedPose refined = refine_over_all(made.matches, start);
+  ASSERT_TRUE(refined.target_from_source);
+  const auto error = [&](const RigidTransform& pose) {
+    return point_error(pose, made.truth, made.matches.source_points, made.matches.resolution)->mean_pr;
+  };
+  EXPECT_LT(error(*refined.target_from_source), 0.3);
+  const RefinedPose few = refine_rigid(made.matches, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {}, start);
+  EXPECT_LT(error(*refined.target_from_source), error(few.target_from_source.value_or(start)));
+  EXPECT_EQ(refine_over_all(testing::full_table(2), start).status, RefineStatus::TooFewRows);
 }
 
 }  // namespace

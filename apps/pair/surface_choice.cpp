@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "apps/pair/surface_choice.h"
+
+#include "grouping/pose/pose_score.h"
+#include "kernel/surface/normals.h"
+#include "refine/refine_rigid.h"
+
+namespace corral {
+namespace {
+
+constexpr double kReachPr = 4, kTolerancePr = 5;
+constexpr std::size_t kFewestRows = 3;
+
+SurfaceCoverage coverage_of(const Mesh& source, const Mesh& target, const ParallelFor& parallel) {
+  const Points source_normals = estimate_normals(source, {}, parallel),
+               target_normals = estimate_normals(target, {}, parallel);
+  return {{source.vertices, source_normals}, {target.vertices, target_normals}};
+}
+
+}  // namespace
+
+SurfaceChoice::SurfaceChoice(const Mesh& source, const Mesh& target, const ParallelFor& parallel)
+    : coverage_(coverage_of(source, target, parallel)) {}
+
+GroupingResult SurfaceChoice::operator()(const CorrespondenceSet& matches, const GroupingResult& found) const {
+  if (!found.target_from_source || found.runner_up.empty()) return found;
+  std::vector<ScoredPose> poses = {{*found.target_from_source, 0}};
+  poses.insert(poses.end(), found.runner_up.begin(), found.runner_up.end());
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    RigidTransform& pose = poses[i].target_from_source;
+    if (const auto refined = refine_over_all(matches, pose).target_from_source) pose = *refined;
+    poses[i].score = coverage_(pose, kReachPr * matches.resolution);
+    if (poses[i].score > poses[best].score) best = i;
+  }
+  GroupingResult chosen = found;
+  if (best == 0) return chosen;
+  std::vector<double> residuals;
+  measure_residuals(matches, poses[best].target_from_source, residuals);
+  chosen.selected = rows_within(residuals, kTolerancePr * matches.resolution);
+  if (chosen.selected.size() < kFewestRows) return found;
+  chosen.target_from_source = poses[best].target_from_source;
+  return chosen;
+}
+
+}  // namespace corral

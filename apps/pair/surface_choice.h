@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "grouping/grouper.h"
+#include "kernel/parallel.h"
+#include "kernel/surface/mesh/mesh.h"
+#include "kernel/surface/scan/surface_coverage.h"
+
+namespace corral {
+
+/// Poses that groupers return beside the chosen one where surfaces choose, unless the user says otherwise.
+constexpr int kPosesForSurfaces = 50;
+
+/// Chooses among the poses that a grouper considered by how the surfaces lie on each other: outside the grouper, which sees no
+/// surface.
+class SurfaceChoice {
+ public:
+  SurfaceChoice(const Mesh& source, const Mesh& target, const ParallelFor& parallel = one_by_one);
+
+  /// The grouper's own pose and its runners-up are each refined over all rows (refine_over_all). If the one under which the
+  /// surfaces cover each other best within 4 pr is not the grouper's own, it replaces the pose, and the rows within 5 pr of it
+  /// replace the selection. Without runners-up the answer stays as it is.
+  GroupingResult operator()(const CorrespondenceSet& matches, const GroupingResult& found) const;
+
+ private:
+  SurfaceCoverage coverage_;
+};
+
+}  // namespace corral
