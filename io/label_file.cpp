@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "io/file.h"
+#include "io/group_file.h"
+
 namespace corral {
 
 bool is_binary(const Eigen::Ref<const Eigen::MatrixXd>& numbers) {
@@ -20,8 +23,8 @@ std::vector<bool> labels_of(const NumberTable& table, int rows) {
     const bool is_row = index >= 0 && index < rows && std::floor(index) == index;
     if (!is_row || labels[static_cast<std::size_t>(index)])
       table.fail(static_cast<int>(i) / table.width(), "expected a label 0 or 1 for each of " + std::to_string(rows) +
-                                                          " matches, or each correct row (0 .. " +
-                                                          std::to_string(rows - 1) + ") once; found " +
+                                                          " matches, or the numbers of rows (0 .. " +
+                                                          std::to_string(rows - 1) + "), each once; found " +
                                                           std::to_string(table.rows.size()) + " numbers");
     labels[static_cast<std::size_t>(index)] = true;
   }
@@ -29,5 +32,16 @@ std::vector<bool> labels_of(const NumberTable& table, int rows) {
 }
 
 std::vector<bool> read_labels(const std::string& name, int rows) { return labels_of(read_number_table(name), rows); }
+
+Indices read_selection(const std::string& name, int rows) {
+  const ArrayName array = split_array_name(name);
+  if (array.name.empty() && read_file(array.file).rfind("row,selected", 0) == 0)
+    return read_group_of(name, rows).selected;
+  const std::vector<bool> labels = read_labels(name, rows);
+  Indices selected;
+  for (int row = 0; row < rows; ++row)
+    if (labels[static_cast<std::size_t>(row)]) selected.push_back(row);
+  return selected;
+}
 
 }  // namespace corral

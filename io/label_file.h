@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "io/number_table.h"
+#include "kernel/types.h"
 
 namespace corral {
 
@@ -14,6 +15,9 @@ namespace corral {
 std::vector<bool> read_labels(const std::string& name, int rows);
 /// The same of numbers that have been read.
 std::vector<bool> labels_of(const NumberTable& table, int rows);
+
+/// The rows that another program selected, as labels; or a group file (read_group) of so many rows.
+Indices read_selection(const std::string& name, int rows);
 
 /// Whether there are numbers, and all are 0 or 1.
 bool is_binary(const Eigen::Ref<const Eigen::MatrixXd>& numbers);
