@@ -74,7 +74,7 @@ std::string box_script(const BoxPanel& panel) {
   const auto count = static_cast<double>(panel.boxes.size());
   std::vector<std::string> methods, names;
   for (const Box& box : panel.boxes) methods.push_back(box.method);
-  const auto styles = method_styles(methods);
+  const auto styles = method_styles(methods, panel.titles);
   std::vector<double> rows;
   std::string plot;
   for (std::size_t i = 0; i < panel.boxes.size(); ++i) {

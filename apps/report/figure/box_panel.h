@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/figure/method_style.h"
+
 namespace corral {
 
 /// A grouper's distribution of an error; a quantile is absent where so many pairs have no value that it is infinite.
@@ -23,6 +25,7 @@ struct BoxPanel {
   std::string name;  ///< of its files, as of a Panel
   std::string title, axis;
   std::vector<Box> boxes;
+  MethodTitles titles = {};
 };
 
 /// x,method,q05,q25,q50,q75,q95,pairs,without

@@ -12,8 +12,8 @@ constexpr double kSample = 22;  // the length of a line
 
 }  // namespace
 
-Legend::Legend(const std::vector<std::string>& methods, double width) {
-  const auto styles = method_styles(methods);
+Legend::Legend(const std::vector<std::string>& methods, double width, const MethodTitles& titles) {
+  const auto styles = method_styles(methods, titles);
   for (const std::string& method : methods) {
     entries_.push_back(styles.at(method));
     entries_.back().label = shortened(entries_.back().label, kMostOfName);

@@ -11,7 +11,7 @@ namespace corral {
 /// The names of groupers beside their lines and markers, in as few rows as the width allows.
 class Legend {
  public:
-  Legend(const std::vector<std::string>& methods, double width);
+  Legend(const std::vector<std::string>& methods, double width, const MethodTitles& titles = {});
   double height() const;
   void draw(Drawing& drawing, double top) const;  ///< centred
 

@@ -6,12 +6,15 @@
 namespace corral {
 namespace {
 
-const std::map<std::string, MethodStyle> kKnown = {
-    {"ss", {"SS", "#000000", 7, "(8,4)"}},       {"nnsr", {"NNSR", "#e69f00", 5, ""}},
-    {"ransac", {"RANSAC", "#0072b2", 9, ""}},    {"st", {"ST", "#cc79a7", 11, "(14,4)"}},
-    {"gc", {"GC", "#009e73", 13, ""}},           {"hough", {"3DHV", "#56b4e9", 15, "(8,4,2,4)"}},
-    {"si", {"SI", "#d55e00", 6, "(4,3)"}},       {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
-    {"baseline", {"baseline", "#888888", 0, "(10,5)"}}};
+const std::map<std::string, MethodStyle> kKnown = {{"ss", {"SS", "#000000", 7, "(8,4)"}},
+                                                   {"nnsr", {"NNSR", "#e69f00", 5, ""}},
+                                                   {"ransac", {"RANSAC", "#0072b2", 9, ""}},
+                                                   {"st", {"ST", "#cc79a7", 11, "(14,4)"}},
+                                                   {"gc", {"GC", "#009e73", 13, ""}},
+                                                   {"hough", {"3DHV", "#56b4e9", 15, "(8,4,2,4)"}},
+                                                   {"si", {"SI", "#d55e00", 6, "(4,3)"}},
+                                                   {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
+                                                   {"baseline", {"baseline", "#888888", 0, "(10,5)"}}};
 
 // For groupers that are not in the paper: colours and markers that none of the seven has.
 const std::vector<std::string> kFurtherColors = {"#882255", "#999933", "#332288", "#aa4499",
@@ -20,7 +23,7 @@ const std::vector<int> kFurtherPoints = {4, 8, 10, 12, 14, 1, 2, 3};
 
 }  // namespace
 
-std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>& methods) {
+std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>& methods, const MethodTitles& titles) {
   std::map<std::string, MethodStyle> styles;
   std::size_t next = 0;
   for (const std::string& method : std::set<std::string>(methods.begin(), methods.end())) {
@@ -30,7 +33,9 @@ std::map<std::string, MethodStyle> method_styles(const std::vector<std::string>&
       continue;
     }
     const std::size_t choice = next++ % kFurtherColors.size();
-    styles[method] = {method, kFurtherColors[choice], kFurtherPoints[choice], choice % 2 == 0 ? "" : "(6,3)"};
+    const auto title = titles.find(method);
+    styles[method] = {title == titles.end() ? method : title->second, kFurtherColors[choice], kFurtherPoints[choice],
+                      choice % 2 == 0 ? "" : "(6,3)"};
   }
   return styles;
 }

@@ -41,6 +41,7 @@ struct Panel {
   std::vector<PanelSeries> series;  ///< in the order of the legend
   std::vector<PanelCount> level_counts, series_counts;
   std::string note;  ///< a note for readers of the table
+  MethodTitles titles = {};
 };
 
 /// The position of a level on the axis.

@@ -129,7 +129,7 @@ std::string plot_text(const Panel& panel) {
 std::string panel_script(const PanelFigure& figure) {
   const double width = figure.panels.size() > 1 ? kPageWidth : kColumnWidth;
   const double share = width / static_cast<double>(figure.panels.size());
-  const Legend legend(methods_of(figure), width);
+  const Legend legend(methods_of(figure), width, figure.panels.front().titles);
   const std::vector<std::string> title = wrapped(figure.title, width - 2 * kGap);
   std::vector<Frame> frames;
   double depth = 0, plot_height = kPlotHeight;

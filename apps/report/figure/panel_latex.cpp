@@ -56,7 +56,7 @@ std::string latex_text(const std::string& text) {
 std::string panel_latex(const Panel& panel) {
   std::vector<std::string> methods;
   for (const PanelSeries& series : panel.series) methods.push_back(series.method);
-  const auto styles = method_styles(methods);
+  const auto styles = method_styles(methods, panel.titles);
   const std::size_t columns = 1 + panel.levels.size() + panel.series_counts.size();
   // A row must not begin with a bracket, which would be read as an option of the previous row.
   std::string text = "\\begin{tabular}{l" + std::string(columns - 1, 'r') + "}\n\\hline\n" + latex_text(panel.y_axis);

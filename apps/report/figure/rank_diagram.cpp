@@ -47,7 +47,7 @@ struct Axis {
 };
 
 std::vector<std::string> names_of(const RankDiagram& diagram, const std::vector<int>& order) {
-  const auto styles = method_styles(diagram.methods);
+  const auto styles = method_styles(diagram.methods, diagram.titles);
   std::vector<std::string> names;
   for (const int place : order) {
     const auto method = static_cast<std::size_t>(place);
@@ -122,7 +122,7 @@ std::string rank_script(const RankDiagram& diagram) {
   draw_axis(page, axis, axis_y, count);
   draw_difference(page, axis, difference_y, diagram.critical_difference, count);
   draw_cliques(page, axis, axis_y + kGap, diagram);
-  const auto styles = method_styles(diagram.methods);
+  const auto styles = method_styles(diagram.methods, diagram.titles);
   for (std::size_t i = 0; i < count; ++i) {
     const auto method = static_cast<std::size_t>(order[i]);
     const bool is_left = i < left_half;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/figure/method_style.h"
+
 namespace corral {
 
 /// What a critical-difference diagram shows.
@@ -14,6 +16,7 @@ struct RankDiagram {
   std::vector<double> average_ranks;      ///< one each; 1 is best
   double critical_difference = 0;         ///< average ranks further apart than this differ
   std::vector<std::vector<int>> cliques;  ///< groupers that do not differ significantly, as positions in `methods`
+  MethodTitles titles = {};
 };
 
 /// method,average_rank in the order of ranks, below a comment line with the critical difference.
