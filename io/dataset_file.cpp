@@ -182,4 +182,10 @@ std::optional<double> attribute_number(const Dataset& dataset, const DatasetPair
   return number;
 }
 
+std::string scene_of(const Dataset& dataset, const DatasetPair& pair) {
+  const auto& columns = dataset.attributes;
+  const bool has_scenes = std::find(columns.begin(), columns.end(), "scene") != columns.end();
+  return attribute_text(dataset, pair, has_scenes ? "scene" : "object");
+}
+
 }  // namespace corral

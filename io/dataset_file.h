@@ -61,4 +61,7 @@ std::string attribute_text(const Dataset& dataset, const DatasetPair& pair, cons
 /// The same as a number; absent if the cell is empty or there is no such column. Throws IoError if it is no finite number.
 std::optional<double> attribute_number(const Dataset& dataset, const DatasetPair& pair, const std::string& attribute);
 
+/// The scene of a pair, for means over scenes: its cell in the column `scene`, or `object` where the set has no such column.
+std::string scene_of(const Dataset& dataset, const DatasetPair& pair);
+
 }  // namespace corral

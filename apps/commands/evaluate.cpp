@@ -123,6 +123,7 @@ std::string footer() {
          "Examples:\n  corral evaluate noise density --data data -o runs/b3r --jobs 2\n"
          "  corral evaluate my-experiment.toml --data my-scans -o runs/mine --cache ~/.cache/corral\n"
          "  corral evaluate time --data data -o runs/time\n"
+         "  corral evaluate tables.toml --data data --methods methods.toml -o runs/field\n"
          "  corral evaluate clutter --data data -o runs/big --shard 3/7  # then: corral merge runs/big";
 }
 

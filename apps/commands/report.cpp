@@ -38,7 +38,8 @@ std::vector<RankDiagram> rank_diagrams(const std::vector<StudyResults>& studies)
         const ExperimentInfo& info = table.info;
         diagrams.push_back({file_name_part(info.name) + "-" + file_name_part(info.dataset) + "-ranks-" + measure->title,
                             info.title + ": average ranks by " + measure->title, compared.methods,
-                            compared.ranks.average_ranks, compared.ranks.critical_difference, compared.ranks.cliques});
+                            compared.ranks.average_ranks, compared.ranks.critical_difference, compared.ranks.cliques,
+                            info.titles});
       }
   return diagrams;
 }

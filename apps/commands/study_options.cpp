@@ -2,6 +2,7 @@
 #include "apps/commands/study_options.h"
 
 #include "apps/commands/command_options.h"
+#include "io/file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -13,12 +14,18 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_option("--data", options.data, "A data set (a folder with dataset.toml), or a folder of data sets")
       ->type_name("FOLDER")
       ->required();
+  command
+      .add_option("--methods", options.methods,
+                  "Methods of other programs to be scored beside the groupers: methods.toml, which names the files of "
+                  "their selections and poses (paper/README.md)")
+      ->type_name("FILE");
   add_set_option(command, options.set);
   command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
 }
 
 StudyCall study_call(const StudyOptions& options) {
   StudyCall call = study_call(options.experiments, options.data);
+  if (!options.methods.empty()) call.methods = {options.methods, read_file(options.methods)};
   call.options = parse_set(options.set);
   call.dense = options.dense;
   return call;
@@ -35,6 +42,7 @@ WorkList work_list_of(const StudyOptions& options) {
 std::vector<std::string> words_of(const StudyOptions& options) {
   std::vector<std::string> words = options.experiments;
   words.insert(words.end(), {"--data", options.data});
+  if (!options.methods.empty()) words.insert(words.end(), {"--methods", options.methods});
   for (const std::string& option : options.set) words.insert(words.end(), {"--set", option});
   if (options.dense) words.push_back("--dense");
   return words;

@@ -13,6 +13,7 @@ namespace corral {
 struct StudyOptions {
   std::vector<std::string> experiments;
   std::string data;
+  std::string methods;  ///< file; may be empty
   std::vector<std::string> set;
   bool dense = false;
 };

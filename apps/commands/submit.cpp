@@ -56,6 +56,7 @@ void put_calls(const Settings& settings, SlurmJobs& jobs) {
   for (std::string& experiment : options.experiments)
     if (fs::exists(experiment)) experiment = absolute(experiment);
   options.data = absolute(options.data);
+  if (!options.methods.empty()) options.methods = absolute(options.methods);
   jobs.evaluate = {program, "evaluate"};
   const auto add = [&](const std::vector<std::string>& words) {
     jobs.evaluate.insert(jobs.evaluate.end(), words.begin(), words.end());

@@ -222,6 +222,8 @@ Pairs find_3dmatch(const Tree& tree) {
           (pair.source_features.empty() || pair.target_features.empty()))
         continue;
       pair.truth = tree.path(file) + ":" + std::to_string(entry.source) + "," + std::to_string(entry.target);
+      pair.attributes.push_back({"source_fragment", std::to_string(entry.source)});
+      pair.attributes.push_back({"target_fragment", std::to_string(entry.target)});
       pair.attributes.push_back({"fragments_apart", std::to_string(std::abs(entry.source - entry.target))});
       if (entry.overlap_points) pair.attributes.push_back({"overlap_points", to_text(*entry.overlap_points)});
       pairs.push_back(std::move(pair));

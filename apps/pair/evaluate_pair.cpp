@@ -9,6 +9,8 @@
 #include "kernel/missing_column.h"
 #include "kernel/surface/scan/visibility.h"
 #include "kernel/surface/search/diameter.h"
+#include "kernel/surface/search/nearest_error.h"
+#include "kernel/surface/search/nearest_points.h"
 
 namespace corral {
 namespace {
@@ -27,26 +29,21 @@ PoseErrors errors_against(const RigidTransform& right, const RigidTransform& est
     const PointError whole = *point_error(estimate, right, truth.vertices, truth.diameter);
     errors.add_share = whole.mean_pr;
     errors.mssd_share = whole.max_pr;
+    if (truth.tree)
+      errors.add_s_share =
+          std::min(whole.mean_pr, nearest_error(estimate, right, truth.vertices, *truth.tree) / truth.diameter);
   }
   return errors;
-}
-
-/// Scores what was found, and refines and judges its pose.
-void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
-  if (truth) {
-    const auto labels = labels_of(matches, truth->poses(), truth->threshold_pr);
-    record.score = score_grouping(labels[best_truth(labels, record.found.selected)], record.found.selected);
-  }
-  record.pose = refine_rigid(matches, record.found.selected);
-  if (truth) judge_pose(record, *truth, matches.resolution);
 }
 
 }  // namespace
 
 PairTruth pair_truth(const Mesh& source, const Mesh& target, const RigidTransform& target_from_source,
                      double resolution, double threshold_pr) {
-  return {target_from_source, points_in_overlap(source.vertices, target, target_from_source, resolution), threshold_pr,
-          source.vertices, corral::diameter(source.vertices)};
+  PairTruth truth{target_from_source, points_in_overlap(source.vertices, target, target_from_source, resolution),
+                  threshold_pr, source.vertices, corral::diameter(source.vertices)};
+  truth.tree = std::make_shared<PointTree>(source.vertices);
+  return truth;
 }
 
 PairTruth table_truth(const CorrespondenceSet& matches, const RigidTransform& target_from_source, double threshold_pr) {
@@ -114,6 +111,22 @@ std::string MethodRecord::outcome() const {
 MethodStatus MethodRecord::status() const {
   if (!failure.empty()) return {failure_state, failure};
   return status_of(pose);
+}
+
+void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth,
+           bool is_stated) {
+  const GroupingResult& found = record.found;
+  if (truth) {
+    const auto labels = labels_of(matches, truth->poses(), truth->threshold_pr);
+    record.score = score_grouping(labels[best_truth(labels, found.selected)], found.selected);
+  }
+  const std::optional<RigidTransform> start = is_stated ? found.target_from_source : std::nullopt;
+  record.pose = refine_rigid(matches, found.selected, {}, start);
+  if (start) {
+    record.pose.initial = start;
+    if (!record.pose.target_from_source) record.pose.target_from_source = start;
+  }
+  if (truth) judge_pose(record, *truth, matches.resolution);
 }
 
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution) {

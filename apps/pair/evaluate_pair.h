@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,15 +16,18 @@
 
 namespace corral {
 
+class PointTree;
+
 /// The ground truth of a pair.
 struct PairTruth {
   RigidTransform target_from_source;
-  Points overlap;                        ///< source points over which a pose is judged; may be empty
-  double threshold_pr = 4;               ///< largest residual of a correct match
-  Points vertices{};                     ///< all source vertices; empty where the mesh is not available
-  double diameter = 0;                   ///< of these, mesh units
-  Points rmse_points{};                  ///< over which the RMSE is taken, if not over the overlap
-  std::vector<RigidTransform> equals{};  ///< further poses that are as right as the first
+  Points overlap;                           ///< source points over which a pose is judged; may be empty
+  double threshold_pr = 4;                  ///< largest residual of a correct match
+  Points vertices{};                        ///< all source vertices; empty where the mesh is not available
+  double diameter = 0;                      ///< of these, mesh units
+  Points rmse_points{};                     ///< over which the RMSE is taken, if not over the overlap
+  std::vector<RigidTransform> equals{};     ///< further poses that are as right as the first
+  std::shared_ptr<const PointTree> tree{};  ///< of the vertices; null where the mesh is not available
 
   /// The first, then its equals.
   std::vector<RigidTransform> poses() const;
@@ -52,12 +56,13 @@ struct PoseErrors {
   std::optional<PointError> points;  ///< over the overlap
   std::optional<double> add_share;   ///< mean distance of all source vertices, in diameters of the source (ADD)
   std::optional<double> mssd_share;  ///< the largest of these distances, over the poses that are right the least (MSSD)
+  std::optional<double> add_s_share = {};  ///< as ADD, with the distance to the nearest vertex (ADD-S, nearest_error.h)
 };
 /// Against the nearest of the poses that are right: that with the least mean error, or without points the least rotation error.
 PoseErrors pose_errors(const RigidTransform& estimate, const PairTruth& truth, double resolution);
 
 constexpr double kSuccessPr = 5;          ///< most mean error over the overlap of a pose that registers a pair
-constexpr double kSuccessAddShare = 0.1;  ///< a pose recognises an object if its ADD is below this
+constexpr double kSuccessAddShare = 0.1;  ///< a pose recognises an object if its ADD, or ADD-S, is below this
 
 /// Whether a pose registers the pair: it exists, and its PointError::mean_pr is at most kSuccessPr.
 bool is_registered(const std::optional<PoseErrors>& errors);
@@ -68,8 +73,9 @@ struct MethodRecord {
   std::string failure;                              ///< why the grouper gave no answer; empty if it did
   MethodState failure_state = MethodState::Failed;  ///< or TooLarge: it was not called; or NotApplicable
   GroupingResult found;
-  std::optional<double> time_ms;       ///< median of the timed calls, the grouping alone
-  std::optional<GroupingScore> score;  ///< with a truth
+  std::optional<double> time_ms;         ///< median of the timed calls, the grouping alone
+  std::optional<double> stated_time_ms;  ///< what another program says that it took
+  std::optional<GroupingScore> score;    ///< with a truth
   RefinedPose pose;
   std::optional<PoseErrors> initial_errors;  ///< of the least-squares fit to the selection, with a truth
   std::optional<PoseErrors> errors;          ///< of the refined pose, with a truth
@@ -92,6 +98,11 @@ TimedGrouping time_grouping(const GroupFunction& group, const CorrespondenceSet&
 
 /// Why a grouper may not be called with this many matches: "needs 800.0 MB, the limit is 512.0 MB". Empty if it may.
 std::string too_large(const ConfiguredGrouper& grouper, int matches, double memory_limit);
+
+/// Scores what was found, refines its pose and judges it. A pose in `found` that `is_stated` by another program is the start
+/// of the refinement in place of the fit, and stands where the refinement has none.
+void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::optional<PairTruth>& truth,
+           bool is_stated = false);
 
 /// Fills in the errors of the refined pose and of its start.
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution);

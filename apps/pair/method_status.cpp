@@ -13,7 +13,7 @@ bool has_cause(MethodState state) { return state >= MethodState::TooLarge; }
 }  // namespace
 
 MethodStatus status_of(const RefinedPose& pose) {
-  if (pose.target_from_source && !pose.converged) return {MethodState::NotConverged};
+  if (pose.status == RefineStatus::Refined && !pose.converged) return {MethodState::NotConverged};
   return {static_cast<MethodState>(pose.status)};
 }
 

@@ -135,16 +135,18 @@ Json to_json(const GroupingScore& score) {
 }
 
 void add_errors(Json& json, const std::string& prefix, const std::optional<PoseErrors>& errors, bool is_judged) {
-  std::optional<double> rotation, translation, rmse, mean, add, success_from;
-  std::optional<bool> success, success_add;
+  std::optional<double> rotation, translation, rmse, mean, add, add_s, success_from;
+  std::optional<bool> success, success_add, success_add_s;
   if (errors) {
     rotation = errors->rotation_error_deg;
     translation = errors->translation_error_pr;
     if (errors->points) rmse = errors->points->rmse_pr, mean = errors->points->mean_pr;
     add = errors->add_share;
+    add_s = errors->add_s_share;
   }
   if (is_judged || mean) success = is_registered(errors);
   if (add || (is_judged && !errors)) success_add = add && *add < kSuccessAddShare;
+  if (add_s || (is_judged && !errors)) success_add_s = add_s && *add_s < kSuccessAddShare;
   const std::vector<double>& thresholds = success_thresholds_pr();
   const auto least = std::find_if(thresholds.begin(), thresholds.end(), [&](double t) { return mean && *mean <= t; });
   if (least != thresholds.end()) success_from = *least;
@@ -153,9 +155,11 @@ void add_errors(Json& json, const std::string& prefix, const std::optional<PoseE
   json[prefix + "rmse_pr"] = json_or_null(rmse);
   json[prefix + "mean_error_pr"] = json_or_null(mean);
   json[prefix + "add_share"] = json_or_null(add);
+  json[prefix + "add_s_share"] = json_or_null(add_s);
   json[prefix + "success_5pr"] = json_or_null(success);
   json[prefix + "success_from_pr"] = json_or_null(success_from);
   json[prefix + "success_add"] = json_or_null(success_add);
+  json[prefix + "success_add_s"] = json_or_null(success_add_s);
 }
 
 Json pose_json(const MethodRecord& record) {

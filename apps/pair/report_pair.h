@@ -13,8 +13,8 @@ namespace corral {
 Json to_json(const GroupingScore& score);
 
 /// Appends the errors of a pose, each key after the prefix, null where undefined:
-/// rotation_error_deg, translation_error_pr, rmse_pr, mean_error_pr, add_share, success_5pr (is_registered),
-/// success_from_pr (the least of success_thresholds_pr() at which it is), success_add (ADD below a tenth).
+/// rotation_error_deg, translation_error_pr, rmse_pr, mean_error_pr, add_share, add_s_share, success_5pr (is_registered),
+/// success_from_pr (the least of success_thresholds_pr() at which it is), success_add and success_add_s (below a tenth).
 /// `is_judged`: an absent pose counts as a failure; otherwise its success is unknown.
 void add_errors(Json& json, const std::string& prefix, const std::optional<PoseErrors>& errors, bool is_judged);
 

@@ -163,11 +163,14 @@ Json measures_of() {
 /// How each method looks in the figures.
 Json styles_of(const std::vector<StudyResults>& studies) {
   std::vector<std::string> methods = {"oracle", "baseline"};
+  MethodTitles titles;
   for (const StudyResults& study : studies)
-    for (const ExperimentInfo& experiment : study.run->experiments)
+    for (const ExperimentInfo& experiment : study.run->experiments) {
       methods.insert(methods.end(), experiment.methods.begin(), experiment.methods.end());
+      titles.insert(experiment.titles.begin(), experiment.titles.end());
+    }
   Json styles = Json::object();
-  for (const auto& [method, style] : method_styles(methods))
+  for (const auto& [method, style] : method_styles(methods, titles))
     styles[method] = {{"label", style.label}, {"color", style.color}, {"point", style.point}, {"dash", style.dash}};
   return styles;
 }

@@ -53,13 +53,15 @@ Points vertices_at(const Mesh& mesh, const Indices& rows, const std::string& pat
   return points;
 }
 
-std::string label_of(const std::string& method) { return method_styles({method}).at(method).label; }
+std::string label_of(const ExperimentInfo& info, const std::string& method) {
+  return method_styles({method}, info.titles).at(method).label;
+}
 
 std::vector<DrawnGroup> groups_of(const ExperimentInfo& info, const PairSelections& selections) {
   std::vector<DrawnGroup> groups;
   for (const std::string& method : info.methods) {
     const auto found = selections.selected.find(method);
-    if (found != selections.selected.end()) groups.push_back({label_of(method), found->second});
+    if (found != selections.selected.end()) groups.push_back({label_of(info, method), found->second});
   }
   Indices all(selections.source_keypoints.size());
   std::iota(all.begin(), all.end(), 0);
@@ -70,7 +72,7 @@ std::vector<DrawnGroup> groups_of(const ExperimentInfo& info, const PairSelectio
 /// The poses of every grouper, one row each; a stage that no grouper has is left out.
 class PoseGrid {
  public:
-  PoseGrid(const GalleryPair& pair, const std::vector<StudyPose>& poses) {
+  PoseGrid(const GalleryPair& pair, const std::vector<StudyPose>& poses) : info_(experiment_of(pair)) {
     for (const StudyPose& pose : poses) poses_[{pose.method, pose.stage}] = pose.target_from_source;
     for (const StudyRecord& record : pair.run->records)
       if (record.experiment == pair.record->experiment && record.selection == pair.record->selection &&
@@ -91,7 +93,7 @@ class PoseGrid {
 
   DrawnPose at(const std::string& method, const std::string& stage) const {
     const auto pose = poses_.find({method, stage});
-    std::string title = label_of(method) + ", " +
+    std::string title = label_of(info_, method) + ", " +
                         (stage == "dense"     ? "dense refinement"
                          : stage == "initial" ? "initial fit"
                                               : "refined");
@@ -103,6 +105,7 @@ class PoseGrid {
 
  private:
   using Key = std::pair<std::string, std::string>;  // method, stage
+  const ExperimentInfo& info_;
   std::map<Key, RigidTransform> poses_;
   std::map<Key, std::optional<double>> errors_;
 };

@@ -102,6 +102,7 @@ Layout lay_out(const StudyFolder& run) {
     const std::size_t row = rows.row_of(level, record, level.pairs.size());
     if (row == level.pairs.size()) {
       level.pairs.push_back(record.pair);
+      level.scenes.push_back(record.scene);
       level.selections.emplace_back();
       level.roles.push_back(role_of(record, layout.tables[experiment].info.least_true_matches));
       level.value.push_back(kAbsent);

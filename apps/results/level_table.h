@@ -24,6 +24,7 @@ struct MethodColumns {
 struct LevelTable {
   StudyLevel level;
   std::vector<std::string> pairs;              ///< of each row, in the order of the records
+  std::vector<std::string> scenes;             ///< of each row; empty where the pair belongs to none
   std::vector<std::string> selections;         ///< file below the run's folder, or empty
   std::vector<PairRole> roles;                 ///< of each row, for all methods alike
   RowNumbers value;                            ///< of the swept attribute

@@ -19,7 +19,7 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 constexpr auto Larger = Better::Larger, Smaller = Better::Smaller;
 constexpr auto Zero = Absent::Zero, LeftOut = Absent::LeftOut, Infinite = Absent::Infinite;
 constexpr auto None = Average::None, Mean = Average::Mean, Median = Average::Median, Pooled = Average::Pooled;
-constexpr auto Quantile75 = Average::Quantile75, Quantile95 = Average::Quantile95;
+constexpr auto Quantile75 = Average::Quantile75, Quantile95 = Average::Quantile95, Scenes = Average::Scenes;
 
 Stored count(std::optional<int> R::*member) { return {member, nullptr, nullptr, nullptr}; }
 Stored number(Number R::*member) { return {nullptr, member, nullptr, nullptr}; }
@@ -51,10 +51,12 @@ Number rmse_within_20cm(const R& record) {
   return *record.refined.rmse_pr * *record.metres_per_pr <= 0.2 ? 1 : 0;
 }
 
-/// Recognised by ADD: below a tenth of the diameter.
+/// Recognised by ADD or ADD-S: below a tenth of the diameter.
+template <Number PoseScores::*Share>
 Number recognised(const R& record) {
-  if (!record.refined.add_share) return std::nullopt;
-  return *record.refined.add_share < kSuccessAddShare ? 1 : 0;
+  const Number& share = record.refined.*Share;
+  if (!share) return std::nullopt;
+  return *share < kSuccessAddShare ? 1 : 0;
 }
 
 template <Number PoseScores::*Score>
@@ -87,6 +89,7 @@ const std::vector<Measure> kOfSelections = {
 };
 const std::vector<Measure> kOfCalls = {
     {"time_ms",             "time",            "ms", 2, kAny, Smaller, number(&R::time_ms), nullptr, LeftOut, None, kOnPage | kEveryPair},
+    {"stated_time_ms",      "time, as stated", "ms", 2, kAny, Smaller, number(&R::stated_time_ms), nullptr, LeftOut, Median, kOnPage},
     {"success_area",        "success area",    "", 3, 1, Larger, {}, area, Zero, Mean},
     {"initial_success_5pr", "initial success", "", 3, 1, Larger, {}, success<&R::initial>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},
@@ -96,7 +99,11 @@ const std::vector<Measure> kOfCalls = {
     {"success_3dmatch_rmse", "3DMatch: RMSE 20 cm",   "", 3, 1, Larger, {}, rmse_within_20cm, Zero, Mean, kYesOrNo | kIfTried},
     {"success_kitti",       "KITTI: 5 deg, 60 cm",    "", 3, 1, Larger, {}, within<5, 60>,    Zero, Mean, kYesOrNo | kIfTried},
     {"success_kitti_2m",    "KITTI: 5 deg, 2 m",      "", 3, 1, Larger, {}, within<5, 200>,   Zero, Mean, kYesOrNo | kIfTried},
-    {"success_add",         "ADD below 0.1",          "", 3, 1, Larger, {}, recognised,       Zero, Mean, kYesOrNo | kIfTried},
+    {"success_add",         "ADD below 0.1",          "", 3, 1, Larger, {}, recognised<&PoseScores::add_share>,   Zero, Mean, kYesOrNo | kIfTried},
+    {"success_add_s",         "ADD-S below 0.1",        "", 3, 1, Larger, {}, recognised<&PoseScores::add_s_share>, Zero, Mean, kYesOrNo | kIfTried},
+    {"success_5pr_scenes",          "success, mean over scenes",                "", 3, 1, Larger, {}, success<&R::refined>, Zero, Scenes, kYesOrNo | kIfTried},
+    {"success_3dmatch_scenes",      "3DMatch: 15 deg, 30 cm, mean over scenes", "", 3, 1, Larger, {}, within<15, 30>,       Zero, Scenes, kYesOrNo | kIfTried},
+    {"success_3dmatch_rmse_scenes", "3DMatch: RMSE 20 cm, mean over scenes",    "", 3, 1, Larger, {}, rmse_within_20cm,     Zero, Scenes, kYesOrNo | kIfTried},
     {"refined_rotation_error_deg_q75",   "rotation error, 75 %",    "deg", 2, kAny, Smaller, {}, of_refined<&PoseScores::rotation_error_deg>,   Infinite, Quantile75},
     {"refined_rotation_error_deg_q95",   "rotation error, 95 %",    "deg", 2, kAny, Smaller, {}, of_refined<&PoseScores::rotation_error_deg>,   Infinite, Quantile95},
     {"refined_translation_error_pr_q75", "translation error, 75 %", "pr",  2, kAny, Smaller, {}, of_refined<&PoseScores::translation_error_pr>, Infinite, Quantile75},
@@ -112,6 +119,7 @@ const std::vector<PoseMeasure> kOfPoses = {
     {"rmse_pr",              "RMSE",              "pr",        &PoseScores::rmse_pr,              false, false},
     {"add_share",            "ADD",               "diameters", &PoseScores::add_share,            false, false},
     {"mssd_share",           "MSSD",              "diameters", &PoseScores::mssd_share,           false, false},
+    {"add_s_share",          "ADD-S",             "diameters", &PoseScores::add_s_share,          false, false},
 };
 // clang-format on
 

@@ -14,8 +14,9 @@ namespace corral {
 /// What a mean over pairs takes for a number that a judged pair lacks. (Of a pair that is not judged it is left out.)
 enum class Absent { Zero, LeftOut, Infinite };
 
-/// What of the pairs of a level stands in summary.csv. Pooled: the sum of one measure over the sum of another.
-enum class Average { None, Mean, Median, Quantile75, Quantile95, Pooled };
+/// What of the pairs of a level stands in summary.csv. Pooled: the sum of one measure over the sum of another. Scenes: the mean
+/// over scenes of the mean over the pairs of each; pairs without a scene are left out.
+enum class Average { None, Mean, Median, Quantile75, Quantile95, Pooled, Scenes };
 
 enum class Better { Larger, Smaller };
 

@@ -28,6 +28,7 @@ ExperimentInfo experiment_of(const Json& json) {
   for (const Json& level : json.at("levels"))
     info.levels.push_back({level.at("label"), level.at("low"), level.at("high")});
   info.methods = json.at("methods").get<std::vector<std::string>>();
+  for (const Json& method : json.at("foreign_methods")) info.titles[method.at("name")] = method.at("title");
   info.threshold_pr = json.at("threshold_pr");
   info.least_true_matches = json.at("least_true_matches");
   return info;

@@ -25,10 +25,11 @@ struct ExperimentInfo {
   std::string title;   ///< a few words for people
   std::string figure;  ///< panel of the paper, such as "a"; empty if it has none
   std::string dataset;
-  std::string attribute;             ///< swept: a column of pairs.csv, threshold_pr, matches, or method.option
-  std::string axis;                  ///< label and unit of an axis, such as "noise (pr)"
-  std::vector<StudyLevel> levels;    ///< in order
-  std::vector<std::string> methods;  ///< in order, the bounds left out
+  std::string attribute;                      ///< swept: a column of pairs.csv, threshold_pr, matches, or method.option
+  std::string axis;                           ///< label and unit of an axis, such as "noise (pr)"
+  std::vector<StudyLevel> levels;             ///< in order
+  std::vector<std::string> methods;           ///< in order, the bounds left out
+  std::map<std::string, std::string> titles;  ///< of methods of other programs, for people
   double threshold_pr = 4;
   int least_true_matches = 1;  ///< pairs with fewer are excluded for all methods
 };

@@ -31,6 +31,7 @@ void visit_columns(Record& record, Visitor&& visit) {
   visit("dataset", record.dataset);
   visit("level", record.level);
   visit("pair", record.pair);
+  visit("scene", record.scene);
   visit("method", record.method);
   visit("repeat", record.repeat);
   visit("value", record.value);

@@ -17,12 +17,15 @@ struct PoseScores {
   std::optional<double> rmse_pr;        ///< root mean square of the same
   std::optional<double> add_share;      ///< mean distance of all source vertices, in diameters of the source
   std::optional<double> mssd_share;     ///< the largest of these distances
+  std::optional<double> add_s_share;    ///< the mean with the distance to the nearest vertex
 };
 
 /// A row of records.csv: one grouper on one pair at one level of one experiment. "oracle" (all correct matches) and
 /// "baseline" (all matches) are listed like groupers where the truth is known. Records share their texts: a study has millions.
 struct StudyRecord {
-  SharedText experiment, dataset, level, pair, method;
+  SharedText experiment, dataset, level, pair;
+  SharedText scene;  ///< of the pair (scene_of); empty if it belongs to none
+  SharedText method;
   int repeat = 0;               ///< from 0
   std::optional<double> value;  ///< of the swept attribute
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
@@ -30,10 +33,11 @@ struct StudyRecord {
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
-  std::optional<double> metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
-  PoseScores initial, refined, dense;   ///< of the fit to the selection, the refined and the dense pose
-  std::optional<double> time_ms;        ///< of the grouping alone
-  SharedText selection;                 ///< file of selections in the study folder; empty if there is none
+  std::optional<double> metres_per_pr;   ///< where the data set is in metres: for the criteria that the field states so
+  PoseScores initial, refined, dense;    ///< of the fit to the selection, the refined and the dense pose
+  std::optional<double> time_ms;         ///< of the grouping alone
+  std::optional<double> stated_time_ms;  ///< of a method of another program, as that says
+  SharedText selection;                  ///< file of selections in the study folder; empty if there is none
 };
 
 /// The names of the columns, in order.

@@ -33,9 +33,20 @@ double judged_mean(const LevelTable& level, RowNumbers column) {
   return mean_of(column);
 }
 
+/// Over scenes, each with the mean over its rows.
+double mean_over_scenes(const LevelTable& level, const RowNumbers& column) {
+  std::map<std::string, RowNumbers> scenes;
+  for (std::size_t row = 0; row < column.size(); ++row)
+    if (!level.scenes[row].empty()) scenes[level.scenes[row]].push_back(column[row]);
+  RowNumbers means;
+  for (const auto& [scene, numbers] : scenes) means.push_back(mean_of(numbers));
+  return mean_of(means);
+}
+
 double average(const LevelTable& level, const std::string& method, const Measure& measure) {
   if (measure.average == Average::Pooled) return pooled(level, method, measure);
   const RowNumbers& column = *level.column(measure, method);
+  if (measure.average == Average::Scenes) return mean_over_scenes(level, column);
   if (measure.average == Average::Median) return median_of(column);
   if (measure.average == Average::Quantile75) return quantile_of_present(column, 0.75);
   if (measure.average == Average::Quantile95) return quantile_of_present(column, 0.95);

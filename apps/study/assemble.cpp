@@ -16,6 +16,7 @@ StudyRecord common_part(const WorkList& list, const StudySample& sample, const U
   record.dataset = info.dataset;
   record.level = sample.level < 0 ? std::string() : info.levels[static_cast<std::size_t>(sample.level)].label;
   record.pair = list.units[static_cast<std::size_t>(sample.unit)].pair.name;
+  record.scene = list.units[static_cast<std::size_t>(sample.unit)].scene;
   record.value = sample.value;
   if (result.failure.empty()) record.matches = result.matches;
   if (result.failure.empty() && list.units[static_cast<std::size_t>(sample.unit)].is_in_metres)
@@ -44,6 +45,7 @@ StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t thres
   record.refined = task.refined;
   record.dense = task.dense;
   record.time_ms = task.time_ms;
+  record.stated_time_ms = task.stated_time_ms;
   if (task.correct.empty() || !task.selected) return record;
   const int correct = task.correct[threshold];
   const int right = task.true_matches.empty() ? *record.true_matches : task.true_matches[threshold];

@@ -26,7 +26,7 @@ namespace {
 
 /// Part of every key, to be changed with the format of the results; another commit of the program also computes everything
 /// again.
-constexpr char kFormat[] = "corral study 4";
+constexpr char kFormat[] = "corral study 5";
 
 std::string key_of(const std::vector<std::string>& parts) {
   static const std::string program = "\n" + build_info().version + " " + build_info().commit;
@@ -68,9 +68,8 @@ std::string one_line(std::string text) {
 
 PoseScores pose_scores(const std::optional<PoseErrors>& errors) {
   if (!errors) return {};
-  PoseScores scores{
-      errors->rotation_error_deg, errors->translation_error_pr, std::nullopt, std::nullopt, errors->add_share,
-      errors->mssd_share};
+  PoseScores scores{errors->rotation_error_deg, errors->translation_error_pr, std::nullopt,       std::nullopt,
+                    errors->add_share,          errors->mssd_share,           errors->add_s_share};
   if (errors->points) scores.mean_error_pr = errors->points->mean_pr, scores.rmse_pr = errors->points->rmse_pr;
   return scores;
 }
@@ -109,6 +108,10 @@ class PairStudy {
 
   UnitResult evaluate() {
     for (const GroupingTask& task : unit_.tasks) {
+      if (task.answer) {
+        records_.push_back(evaluate_answer(task.method, *task.answer, unit_.pair.name, matches_, truth_));
+        continue;
+      }
       const ConfiguredGrouper grouper = find_grouper(task.method).configure(task.options);
       records_.push_back(evaluate_method(task.method, grouper, matches_, truth_, 1));
     }
@@ -215,6 +218,7 @@ class PairStudy {
     result.status = record.status();
     result.status.cause = one_line(result.status.cause);
     result.time_ms = record.time_ms;
+    result.stated_time_ms = record.stated_time_ms;
     if (!record.failure.empty()) return result;
     result.selected = static_cast<int>(record.found.selected.size());
     for (const auto& labels : labels_) {

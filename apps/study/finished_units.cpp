@@ -54,10 +54,23 @@ void FinishedUnits::add(JournalReader& reader, const JournalFile& journal) {
   while (auto entry = reader.next()) {
     const auto found = unit_of_key_.find(entry->unit);
     if (found == unit_of_key_.end() || !fits(entry->result, list_.units[found->second])) continue;
-    if (entry->inputs.size() != list_.units[found->second].pair.files().size()) continue;
+    if (entry->inputs.size() != list_.units[found->second].files().size()) continue;
     if (entry->result.failure.empty() && !has_selections(found->second)) continue;
+    if (outdated_.count({found->second, journal.shard}) > 0) continue;
+    if (is_outdated(found->second, *entry)) {
+      outdated_.insert({found->second, journal.shard});
+      continue;
+    }
     add(found->second, std::move(*entry), journal);
   }
+}
+
+bool FinishedUnits::is_outdated(std::size_t unit, const JournalEntry& entry) {
+  const std::vector<std::string> names = list_.units[unit].files();
+  const std::size_t of_pair = list_.units[unit].pair.files().size();
+  for (std::size_t i = of_pair; i < names.size(); ++i)
+    if (inputs_.try_emplace(names[i], entry.inputs[i]).first->second != entry.inputs[i]) return true;
+  return false;
 }
 
 void FinishedUnits::add(std::size_t unit, JournalEntry entry, const JournalFile& journal) {
@@ -86,10 +99,10 @@ void FinishedUnits::drop_unreadable() {
     auto& files = unit_files_[unit];
     if (!files) continue;
     const std::vector<std::string> names = list_.units[unit].pair.files();
-    bool is_outdated = false;
+    bool is_readable = false;
     for (std::size_t i = 0; i < names.size(); ++i)
-      is_outdated = is_outdated || (files->hashes[i].empty() && !hash_of(inputs_, names[i]).empty());
-    if (!is_outdated) continue;
+      is_readable = is_readable || (files->hashes[i].empty() && !hash_of(inputs_, names[i]).empty());
+    if (!is_readable) continue;
     files.reset();
     results_[unit] = {};
   }

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kFormat[] = "corral journal 1";
+constexpr char kFormat[] = "corral journal 2";
 constexpr std::size_t kHashLength = 32;
 
 std::string line_of(const Json& json) {
@@ -88,7 +88,7 @@ void JournalWriter::append(const JournalEntry& entry) {
     make_folder(units);
     const std::vector<JournalFile> earlier = find_journals(folder_, header_.shard);
     std::optional<AppendFile> file;
-    for (int call = earlier.empty() ? 1 : earlier.back().call + 1; !file; ++call)
+    for (int call = earlier.empty() ? 1 : earlier.front().call + 1; !file; ++call)
       file = AppendFile::create(units + "/" + file_name(header_.shard) + "." + std::to_string(call) + ".journal");
     file->append(line_of(to_json(header_)));
     file_ = std::move(file);  // only with its header
@@ -111,7 +111,7 @@ std::vector<JournalFile> find_journals(const std::string& folder, const std::opt
   if (error && error != std::errc::no_such_file_or_directory)
     throw IoError((fs::path(folder) / "units").string(), "", "cannot be read as a folder (" + error.message() + ")");
   std::sort(found.begin(), found.end(), [](const JournalFile& a, const JournalFile& b) {
-    return std::tie(a.shard, a.call, a.path) < std::tie(b.shard, b.call, b.path);
+    return std::tie(a.shard, b.call, a.path) < std::tie(b.shard, a.call, b.path);
   });
   return found;
 }

@@ -33,7 +33,7 @@ struct JournalHeader {
 /// A line of a journal: a unit that is finished.
 struct JournalEntry {
   std::string unit;                 ///< unit_key
-  std::vector<std::string> inputs;  ///< hashes of DatasetPair::files; empty where there was none to read
+  std::vector<std::string> inputs;  ///< hashes of WorkUnit::files; empty where there was none to read
   double seconds = 0;               ///< that it took
   UnitResult result;
 };
@@ -60,7 +60,7 @@ struct JournalFile {
   int call = 1;
 };
 
-/// The journals in the folder `units` of a study, by shard and call; of one shard if it is given. Empty without the folder.
+/// The journals in the folder `units` of a study, by shard, the latest call first; of one shard if it is given. Empty without the folder.
 std::vector<JournalFile> find_journals(const std::string& folder, const std::optional<Shard>& shard = std::nullopt);
 
 /// Reads a journal from first to last line.

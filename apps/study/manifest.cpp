@@ -19,13 +19,21 @@ namespace fs = std::filesystem;
 
 Json to_json(const Experiment& experiment) {
   const ExperimentInfo& info = experiment.info;
-  Json levels = Json::array(), filters = Json::object(), options = Json::object();
+  Json levels = Json::array(), foreign = Json::array(), filters = Json::object(), options = Json::object();
   for (const StudyLevel& level : info.levels)
     levels.push_back({{"label", level.label}, {"low", level.low}, {"high", level.high}});
   for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.accepted;
   for (const auto& [name, overrides] : experiment.options)
     if (!look_up(groupers(), name)) options[name] = overrides;
+  for (const ForeignMethod& method : experiment.foreign)
+    foreign.push_back({{"name", method.name},
+                       {"title", method.title},
+                       {"labels", !method.labels.empty()},
+                       {"poses", !method.poses.empty()},
+                       {"times", !method.times.empty()},
+                       {"time_ms", json_or_null(method.time_ms)}});
   for (const std::string& method : info.methods) {
+    if (!look_up(groupers(), method)) continue;
     const auto found = experiment.options.find(method);
     options[method] = corral::to_json(
         find_grouper(method).configure(found == experiment.options.end() ? OptionOverrides() : found->second).options);
@@ -39,6 +47,7 @@ Json to_json(const Experiment& experiment) {
           {"axis", info.axis},
           {"levels", levels},
           {"methods", info.methods},
+          {"foreign_methods", foreign},
           {"threshold_pr", info.threshold_pr},
           {"least_true_matches", info.least_true_matches},
           {"filter", filters},
@@ -83,6 +92,9 @@ Json inputs_json(const WorkList& list, const InputHashes& inputs) {
     *pair = {{"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
     if (!unit.pair.matches.empty()) (*pair)["matches"] = hash(unit.pair.matches);
     for (const std::string& truth : unit.pair.equal_truths) (*pair)["equal_truths"].push_back(hash(truth));
+    for (const GroupingTask& task : unit.tasks)
+      if (task.answer)
+        for (const std::string& file : task.answer->files()) (*pair)["answers"][task.method].push_back(hash(file));
   }
   return pairs.json();
 }
@@ -115,14 +127,7 @@ Json pairs_json(const WorkList& list, const std::vector<UnitResult>& results) {
   return pairs.json();
 }
 
-}  // namespace
-
-InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& units, int jobs) {
-  InputHashes inputs;
-  for (const std::size_t unit : units) {
-    for (const std::string& file : list.units[unit].pair.files())
-      if (!file.empty()) inputs[file];
-  }
+void fill_hashes(InputHashes& inputs, int jobs) {
   std::vector<InputHashes::value_type*> files;
   for (auto& input : inputs) files.push_back(&input);
   workers(jobs)(static_cast<int>(files.size()), [&](int i) {
@@ -133,7 +138,30 @@ InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& un
     } catch (const IoError&) {  // the record of the pair reports it
     }
   });
+}
+
+}  // namespace
+
+InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& units, int jobs) {
+  InputHashes inputs;
+  for (const std::size_t unit : units) {
+    for (const std::string& file : list.units[unit].files())
+      if (!file.empty()) inputs[file];
+  }
+  fill_hashes(inputs, jobs);
   return inputs;
+}
+
+InputHashes hash_answers(const WorkList& list) {
+  InputHashes answers;
+  for (const WorkUnit& unit : list.units)
+    for (const GroupingTask& task : unit.tasks)
+      if (task.answer)
+        for (const std::string& file : task.answer->files()) answers[file];
+  fill_hashes(answers, 0);
+  for (auto answer = answers.begin(); answer != answers.end();)
+    answer = answer->second.empty() ? answers.erase(answer) : std::next(answer);
+  return answers;
 }
 
 StudyIdentity identity_of(const WorkList& list) {

@@ -12,6 +12,9 @@ namespace corral {
 /// The hash of every file that these units name; those that cannot be read have an empty one. `jobs`: files at a time.
 InputHashes hash_inputs(const WorkList& list, const std::vector<std::size_t>& units, int jobs);
 
+/// Of the answers of other programs that can be read here.
+InputHashes hash_answers(const WorkList& list);
+
 /// What this program and this work list are known by.
 StudyIdentity identity_of(const WorkList& list);
 Json machine_json();

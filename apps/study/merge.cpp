@@ -103,7 +103,7 @@ MergeOutcome merge_study(const std::string& folder, const std::vector<std::strin
   for (const std::string& part : parts) bring(part, folder);
   const StudyJournals study = find_study(folder);
   const WorkList list = work_list_of(study, data);
-  FinishedUnits finished(list, folder, {});
+  FinishedUnits finished(list, folder, hash_answers(list));
   std::vector<std::string> damaged;
   for (const JournalFile& journal : study.files) {
     JournalReader reader(journal.path);
@@ -113,10 +113,14 @@ MergeOutcome merge_study(const std::string& folder, const std::vector<std::strin
   finished.drop_unreadable();
   const std::string unfinished = unfinished_text(list, finished, study.files);
   const std::string damage = damaged.empty() ? "" : " (damaged: " + enumeration(damaged) + ")";
+  const std::string outdated = finished.outdated() == 0
+                                   ? ""
+                                   : " (" + std::to_string(finished.outdated()) +
+                                         " results were made from answers of other programs that have changed)";
   if (!unfinished.empty())
-    throw IoError(
-        folder, "",
-        "is not whole: " + unfinished + damage + "; repeat these shards, or 'corral evaluate' without --shard");
+    throw IoError(folder, "",
+                  "is not whole: " + unfinished + damage + outdated +
+                      "; repeat these shards, or 'corral evaluate' without --shard");
   MergeOutcome outcome{finish_study(list, finished, folder, study.command_line), notes_of(finished)};
   if (!damaged.empty()) outcome.notes.push_back("damaged and done again elsewhere: " + enumeration(damaged));
   return outcome;

@@ -19,6 +19,14 @@ struct AttributeFilter {
   std::vector<std::string> accepted;
 };
 
+/// A method of another program, whose answers are in files: an entry of methods.toml. Patterns of files, with {pair} and columns
+/// of pairs.csv; empty where it gives none.
+struct ForeignMethod {
+  std::string name, title;
+  std::string labels, poses, times;
+  std::optional<double> time_ms;
+};
+
 /// The quantity that an experiment sweeps.
 enum class Sweep {
   Column,     ///< a column of pairs.csv: each level has pairs of its own
@@ -45,8 +53,9 @@ struct Experiment {
   std::vector<double> varied_values;
   int repeats = 1;  ///< of stochastic groupers; of all groupers for times
   std::uint64_t seed = 1;
-  bool dense = false;  ///< also refine on the whole surfaces
-  int tables = 1;      ///< of Sweep::TableSize: pairs whose tables are timed
+  bool dense = false;                  ///< also refine on the whole surfaces
+  int tables = 1;                      ///< of Sweep::TableSize: pairs whose tables are timed
+  std::vector<ForeignMethod> foreign;  ///< behind the groupers in `info.methods`
 };
 
 /// The text of an experiment: a file, or the name of a built-in one (see built_in_experiments). Throws IoError, with a

@@ -87,8 +87,10 @@ class Runner {
     JournalEntry entry;
     entry.result = evaluate_unit({unit, inputs_, store_}, files);
     entry.unit = unit_key(unit);
-    for (const std::string& file : unit.pair.files())  // without them it is done again when they can be read
-      entry.inputs.push_back(entry.result.is_unreadable ? "" : hash_of(inputs_, file));
+    const std::vector<std::string> names = unit.files();
+    const std::size_t of_pair = unit.pair.files().size();
+    for (std::size_t i = 0; i < names.size(); ++i)  // without those of the pair it is done again when they can be read
+      entry.inputs.push_back(entry.result.is_unreadable && i < of_pair ? "" : hash_of(inputs_, names[i]));
     entry.seconds = watch.lap_ms() / 1000;
     for (FileContent& file : files) {
       file.path = (folder_ / file.path).string();

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/study/experiment_options.h"
+#include "apps/study/methods_file.h"
 
 namespace corral {
 
@@ -20,15 +21,21 @@ WorkList work_list_of(const StudyCall& call) {
     experiments.push_back(parse_experiment(path, text));
     experiments.back().dense = experiments.back().dense || call.dense;
     override_options(experiments.back(), call.options);
+    if (call.methods) add_methods(experiments.back(), parse_methods(call.methods->path, call.methods->text));
   }
   return make_work_list(std::move(experiments), call.data);
 }
 
 Json to_json(const StudyCall& call) {
-  Json experiments = Json::array();
+  const auto absolute = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
+  };
+  Json experiments = Json::array(), methods = nullptr;
+  if (call.methods) methods = {{"path", absolute(call.methods->path)}, {"text", call.methods->text}};
   for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
   return {{"experiments", experiments},
-          {"data", std::filesystem::absolute(call.data).lexically_normal().string()},
+          {"methods", methods},
+          {"data", absolute(call.data)},
           {"options", call.options},
           {"dense", call.dense}};
 }
@@ -36,6 +43,8 @@ Json to_json(const StudyCall& call) {
 StudyCall study_call_of(const Json& json) {
   StudyCall call;
   for (const Json& each : json.at("experiments")) call.experiments.push_back({each.at("path"), each.at("text")});
+  const Json& methods = json.at("methods");
+  if (!methods.is_null()) call.methods = {methods.at("path"), methods.at("text")};
   call.data = json.at("data");
   call.options = json.at("options").get<OptionsByName>();
   call.dense = json.at("dense");

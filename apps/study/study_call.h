@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,13 @@ namespace corral {
 
 /// What a study is asked for, whole: from it the same work list follows wherever the data sets are.
 struct StudyCall {
-  struct ExperimentText {
+  struct NamedText {
     std::string path, text;
   };
-  std::vector<ExperimentText> experiments;  ///< as read: files, or built-in experiments
-  std::string data;                         ///< a data set, or a folder of data sets
-  OptionsByName options;                    ///< of --set
+  std::vector<NamedText> experiments;  ///< as read: files, or built-in experiments
+  std::optional<NamedText> methods;    ///< methods of other programs, for every experiment
+  std::string data;                    ///< a data set, or a folder of data sets
+  OptionsByName options;               ///< of --set
   bool dense = false;
 };
 

@@ -39,10 +39,15 @@ PoseScores pose_scores_of(const Json& json) {
 }
 
 Json to_json(const TaskResult& task) {
-  return {{"status", to_text(task.status)},   {"selected", json_or_null(task.selected)},
-          {"correct", task.correct},          {"true_matches", task.true_matches},
-          {"initial", to_json(task.initial)}, {"refined", to_json(task.refined)},
-          {"dense", to_json(task.dense)},     {"time_ms", json_or_null(task.time_ms)}};
+  return {{"status", to_text(task.status)},
+          {"selected", json_or_null(task.selected)},
+          {"correct", task.correct},
+          {"true_matches", task.true_matches},
+          {"initial", to_json(task.initial)},
+          {"refined", to_json(task.refined)},
+          {"dense", to_json(task.dense)},
+          {"time_ms", json_or_null(task.time_ms)},
+          {"stated_time_ms", json_or_null(task.stated_time_ms)}};
 }
 
 TaskResult task_of(const Json& json) {
@@ -58,6 +63,7 @@ TaskResult task_of(const Json& json) {
   task.refined = pose_scores_of(json.at("refined"));
   task.dense = pose_scores_of(json.at("dense"));
   task.time_ms = number_of(json.at("time_ms"));
+  task.stated_time_ms = number_of(json.at("stated_time_ms"));
   return task;
 }
 

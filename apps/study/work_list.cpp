@@ -8,6 +8,7 @@
 
 #include "apps/study/content_store.h"
 #include "apps/study/experiment_options.h"
+#include "apps/study/methods_file.h"
 #include "grouping/registry.h"
 #include "io/line_reader.h"
 #include "io/toml_file.h"
@@ -197,6 +198,7 @@ class Collector {
     if (is_new) {
       DatasetPair files = dataset.with_paths(dataset.pairs[static_cast<std::size_t>(pair)]);
       list_.units.push_back({dataset.name, files, matching, {}, {}, false, dataset.units == "m", false, false, {}});
+      list_.units.back().scene = scene_of(dataset, files);
     }
     WorkUnit& unit = list_.units[static_cast<std::size_t>(sample.unit)];
     unit.dense = unit.dense || experiment.dense;
@@ -207,7 +209,12 @@ class Collector {
     sample.selection =
         "selections/" + unit.dataset + "/" + setting_label(experiment, unit, level) + "/" + unit.pair.name + ".csv";
     for (const std::string& method : experiment.info.methods)
-      for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name)) add_task(task, unit, sample);
+      if (look_up(groupers(), method))
+        for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name))
+          add_task(task, unit, sample);
+    for (const ForeignMethod& method : experiment.foreign)
+      add_task({method.name, {}, 0, std::make_shared<ForeignAnswer>(answer_to(method, dataset, unit.pair))}, unit,
+               sample);
     list_.samples.push_back(std::move(sample));
   }
 
@@ -255,6 +262,14 @@ int level_of(const std::vector<StudyLevel>& levels, double value) {
       return static_cast<int>(i);
   }
   return -1;
+}
+
+std::vector<std::string> WorkUnit::files() const {
+  std::vector<std::string> all = pair.files();
+  for (const GroupingTask& task : tasks)
+    if (task.answer)
+      for (const std::string& file : task.answer->files()) all.push_back(file);
+  return all;
 }
 
 std::string matching_text(const MatchSettings& matching) { return compact_json(to_json(matching)); }

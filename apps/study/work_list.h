@@ -2,20 +2,23 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/pair/foreign_answer.h"
 #include "apps/study/specification.h"
 #include "io/dataset_file.h"
 
 namespace corral {
 
-/// One call of one grouper: its options with the seed of this call.
+/// One call of one grouper: its options with the seed of this call. Or the answer of another program.
 struct GroupingTask {
   std::string method;
   OptionOverrides options;
   int repeat = 0;
+  std::shared_ptr<const ForeignAnswer> answer = {};  ///< then `method` is that of another program; null for a grouper
 
   bool operator==(const GroupingTask& other) const {
     return method == other.method && options == other.options && repeat == other.repeat;
@@ -34,6 +37,10 @@ struct WorkUnit {
   bool is_in_metres = false;                           ///< the data set says so
   bool shares_source = false, shares_target = false;   ///< another unit describes that mesh in the same way
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
+  std::string scene = {};                              ///< scene_of the pair
+
+  /// Those of the pair, then those of the answers of other programs.
+  std::vector<std::string> files() const;
 };
 
 /// A sample of an experiment that a unit provides: all groupers on one pair at one level.

@@ -140,6 +140,7 @@ std::string manifest_text(const StudyFolder& run) {
                                        {"axis", info.axis},
                                        {"levels", levels},
                                        {"methods", info.methods},
+                                       {"foreign_methods", nlohmann::json::array()},
                                        {"threshold_pr", info.threshold_pr},
                                        {"least_true_matches", info.least_true_matches}});
   }

@@ -126,6 +126,7 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
                             {"axis", experiment.axis},
                             {"levels", levels},
                             {"methods", experiment.methods},
+                            {"foreign_methods", Json::array()},
                             {"threshold_pr", experiment.threshold_pr},
                             {"least_true_matches", experiment.least_true_matches}}}},
                          {"pairs", pairs}};

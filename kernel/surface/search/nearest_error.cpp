@@ -7,7 +7,7 @@ namespace corral {
 
 double nearest_error(const RigidTransform& estimate, const RigidTransform& truth, const Points& points,
                      const PointTree& tree) {
-  constexpr Eigen::Index kMost = 5000;
+  constexpr Eigen::Index kMost = 2000;
   if (points.rows() == 0) return 0;
   const Eigen::Index step = (points.rows() + kMost - 1) / kMost;
   Points chosen((points.rows() + step - 1) / step, 3);

@@ -15,7 +15,7 @@ namespace corral {
 /// Reads     V points and their tree; no point gives 0.
 /// Returns   the mean, in units of the points.
 /// Cost      O(N log V).
-/// Departs   Of more than 5,000 points x is every k-th, with the least k that leaves no more; y is any.
+/// Departs   Of more than 2,000 points x is every k-th, with the least k that leaves no more; y is any.
 double nearest_error(const RigidTransform& estimate, const RigidTransform& truth, const Points& points,
                      const PointTree& tree);
 

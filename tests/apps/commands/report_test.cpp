@@ -52,7 +52,7 @@ void put_run(const Workplace& place, const std::string& run = "run", const std::
   place.put(run + "/manifest.json", R"json({"experiments": [{"name": "noise", "title": "Noise", "figure": "a",
     "dataset": "b3r", "attribute": "noise_pr", "axis": "noise (pr)",
     "levels": [{"label": "0.1", "low": 0.1, "high": 0.1},
-    {"label": "0.2", "low": 0.2, "high": 0.2}], "methods": ["ss", "gc"], "threshold_pr": 4, "least_true_matches": 3}],
+    {"label": "0.2", "low": 0.2, "high": 0.2}], "methods": ["ss", "gc"], "foreign_methods": [], "threshold_pr": 4, "least_true_matches": 3}],
     "pairs": )json" + pairs + "}");
   std::vector<StudyRecord> records = {
       record_of("a", "ss", 0.5),  record_of("b", "ss", 3.0),     record_of("c", "ss", {}),

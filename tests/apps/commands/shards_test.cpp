@@ -94,10 +94,10 @@ TEST_F(Shards, WhatDoesNotBelongIsNamed) {
   const std::string journal = "run/units/2-of-2.1.journal", before = place_.text(journal);
   put_line(journal, 1, "0123\n");
   EXPECT_THAT(merge("run").err, AllOf(HasSubstr("unfinished 2/2 (2 of 3 pairs)"), HasSubstr(journal + " line 2")));
-  place_.put(journal, replaced(before, "corral journal 1", "corral journal 7"));
+  place_.put(journal, replaced(before, "corral journal 2", "corral journal 7"));
   EXPECT_THAT(merge("run").err, HasSubstr(journal + ", line 1: does not agree with its hash"));
-  put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "corral journal 1", "corral journal 7")));
-  EXPECT_THAT(merge("run").err, HasSubstr("expected corral journal 1"));
+  put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "corral journal 2", "corral journal 7")));
+  EXPECT_THAT(merge("run").err, HasSubstr("expected corral journal 2"));
   place_.put(journal, before);
   put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "0.1.0", "0.0.9")));
   EXPECT_THAT(merge("run").err, HasSubstr("2-of-2.1.journal: was made by version 0.0.9 of the program, unlike "));

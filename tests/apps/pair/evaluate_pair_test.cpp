@@ -160,6 +160,20 @@ TEST(PoseErrors, AddIsTheMeanOverAllVerticesInDiameters) {
   EXPECT_FALSE(pose_errors(estimate, PairTruth(), 0.5).add_share.has_value());
 }
 
+TEST(PoseErrors, AddSTakesTheNearestVertex) {
+  Mesh square;
+  square.vertices.resize(4, 3);
+  square.vertices << 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0;
+  const PairTruth truth = pair_truth(square, square, {}, 0.5, 4);
+  RigidTransform estimate;  // a quarter of a turn about z, and a shift along it
+  estimate.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  estimate.translation << 0, 0, 0.3;
+  const PoseErrors errors = pose_errors(estimate, truth, 0.5);
+  EXPECT_NEAR(errors.add_s_share.value(), 0.3 / 2, 1e-12);
+  EXPECT_NEAR(errors.add_share.value(), std::sqrt(2 + 0.09) / 2, 1e-12);
+  EXPECT_FALSE(pose_errors(estimate, PairTruth(), 0.5).add_s_share.has_value());
+}
+
 TEST(PairTruth, KnowsTheOverlapAndTheExtentOfTheSource) {
   Mesh source, target;
   source.vertices.resize(3, 3);

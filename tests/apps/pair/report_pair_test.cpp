@@ -30,8 +30,8 @@ MethodRecord full_record() {
   record.pose.initial = RigidTransform();
   record.pose.target_from_source = RigidTransform();
   record.pose.covariance = PoseCovariance::Identity();
-  record.initial_errors = PoseErrors{2.0 / 3, 7, PointError{9, 5.5}, 0.1, {}};
-  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, 1.0 / 7, {}};
+  record.initial_errors = PoseErrors{2.0 / 3, 7, PointError{9, 5.5}, 0.1, {}, 0.2};
+  record.errors = PoseErrors{1.0 / 3, 5e-324, PointError{1e300, 0.25}, 1.0 / 7, {}, 0.05};
   return record;
 }
 
@@ -73,21 +73,25 @@ TEST(MethodsCsv, ReadsBackAsTheSameNumbers) {
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0],
             "method,selected,precision,recall,f1,time_ms,rotation_error_deg,translation_error_pr,rmse_pr,mean_error_pr,"
-            "add_share,success_5pr,success_from_pr,success_add,initial_rotation_error_deg,initial_translation_error_pr,"
-            "initial_rmse_pr,initial_mean_error_pr,initial_add_share,initial_success_5pr,initial_success_from_pr,"
-            "initial_success_add,outcome,status");
+            "add_share,add_s_share,success_5pr,success_from_pr,success_add,success_add_s,"
+            "initial_rotation_error_deg,initial_translation_error_pr,"
+            "initial_rmse_pr,initial_mean_error_pr,initial_add_share,initial_add_s_share,initial_success_5pr,"
+            "initial_success_from_pr,initial_success_add,initial_success_add_s,outcome,status");
   const auto fields = fields_of(lines[1]);
-  ASSERT_EQ(fields.size(), 24U);
+  ASSERT_EQ(fields.size(), 28U);
   EXPECT_EQ(fields[0], "gc");
   EXPECT_EQ(fields[1], "3");
-  const std::vector<double> numbers = {2.0 / 3, 2.0 / 7, 0.4, 0.1, 1.0 / 3, 5e-324,  1e300,  // the refined pose
-                                       0.25,    1.0 / 7, 1,   0.5, 0,       2.0 / 3, 7,      // the fit
-                                       9,       5.5,     0.1, 0};
+  const std::vector<double> numbers = {2.0 / 3, 2.0 / 7, 0.4,  // the selection
+                                       0.1,     1.0 / 3, 5e-324, 1e300, 0.25, 1.0 / 7, 0.05,
+                                       1,       0.5,                                        // the refined pose
+                                       0,       1,                                          //
+                                       2.0 / 3, 7,       9,      5.5,   0.1,  0.2,     0};  // the fit
   for (std::size_t i = 0; i < numbers.size(); ++i) EXPECT_EQ(parse_double(fields[i + 2]).value(), numbers[i]);
-  EXPECT_EQ(fields[20], "") << "no threshold of the curve is large enough";
-  EXPECT_EQ(fields[21], "0") << "a tenth of the diameter is not below a tenth";
-  EXPECT_EQ(fields[22], "saved");
-  EXPECT_EQ(fields[23], "refined");
+  EXPECT_EQ(fields[23], "") << "no threshold of the curve is large enough";
+  EXPECT_EQ(fields[24], "0") << "a tenth of the diameter is not below a tenth";
+  EXPECT_EQ(fields[25], "0");
+  EXPECT_EQ(fields[26], "saved");
+  EXPECT_EQ(fields[27], "refined");
 }
 
 TEST(MethodsCsv, WhatIsUndefinedIsEmpty) {
@@ -97,15 +101,15 @@ TEST(MethodsCsv, WhatIsUndefinedIsEmpty) {
   record.errors.reset();
   record.initial_errors.reset();
   record.pose = RefinedPose();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,0,0,0.1,,,,,,0,,0,,,,,,0,,0,lost,too few rows");
+  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,0,0,0.1,,,,,,,0,,0,0,,,,,,,0,,0,0,lost,too few rows");
   record.score.reset();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,,,0.1,,,,,,,,,,,,,,,,,,too few rows");
+  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,,,0.1,,,,,,,,,,,,,,,,,,,,,,too few rows");
 }
 
 TEST(MethodsCsv, AFailureIsARowWithoutNumbers) {
   const auto lines = lines_of(methods_csv({full_record(), failed_record()}));
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_EQ(lines[2], "ss,,,,,,,,,,,,,,,,,,,,,,,failed: a ;b;; c;d");
+  EXPECT_EQ(lines[2], "ss,,,,,,,,,,,,,,,,,,,,,,,,,,,failed: a ;b;; c;d");
 }
 
 TEST(MethodsText, HasARowPerMethod) {
@@ -139,10 +143,11 @@ TEST(ToJson, AMethodHasItsKeysInOrder) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_THAT(
       keys, ElementsAre("method", "selected", "precision", "recall", "f1", "time_ms", "rotation_error_deg",
-                        "translation_error_pr", "rmse_pr", "mean_error_pr", "add_share", "success_5pr",
-                        "success_from_pr", "success_add", "initial_rotation_error_deg", "initial_translation_error_pr",
-                        "initial_rmse_pr", "initial_mean_error_pr", "initial_add_share", "initial_success_5pr",
-                        "initial_success_from_pr", "initial_success_add", "outcome", "status"));
+                        "translation_error_pr", "rmse_pr", "mean_error_pr", "add_share", "add_s_share", "success_5pr",
+                        "success_from_pr", "success_add", "success_add_s", "initial_rotation_error_deg",
+                        "initial_translation_error_pr", "initial_rmse_pr", "initial_mean_error_pr", "initial_add_share",
+                        "initial_add_s_share", "initial_success_5pr", "initial_success_from_pr", "initial_success_add",
+                        "initial_success_add_s", "outcome", "status"));
   EXPECT_EQ(json["selected"].dump(), "3");
   EXPECT_EQ(json["rmse_pr"], 1e300);
 }
@@ -163,21 +168,24 @@ std::string errors_of(const std::optional<PoseErrors>& errors, bool is_judged) {
 }
 
 TEST(AddErrors, SuccessStartsAtTheFirstThresholdThatHolds) {
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1.2}, 0.05, {}}, true), "1.0 2.0 3.0 1.2 0.05 true 1.5 true");
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{9, 5}, 0.1, {}}, true), "1.0 2.0 9.0 5.0 0.1 true 5.0 false");
-  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 5.01}, 0.05, {}}, true), "1.0 2.0 3.0 5.01 0.05 false null true");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1.2}, 0.2, {}, 0.05}, true),
+            "1.0 2.0 3.0 1.2 0.2 0.05 true 1.5 false true");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{9, 5}, 0.1, {}}, true),
+            "1.0 2.0 9.0 5.0 0.1 null true 5.0 false null");
+  EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 5.01}, 0.05, {}}, true),
+            "1.0 2.0 3.0 5.01 0.05 null false null true null");
 }
 
 TEST(AddErrors, NoPoseHasFailedIfItWasJudged) {
-  EXPECT_EQ(errors_of(std::nullopt, true), "null null null null null false null false");
-  EXPECT_EQ(errors_of(std::nullopt, false), "null null null null null null null null");
+  EXPECT_EQ(errors_of(std::nullopt, true), "null null null null null null false null false false");
+  EXPECT_EQ(errors_of(std::nullopt, false), "null null null null null null null null null null");
 }
 
 TEST(AddErrors, WithoutPointsSuccessIsUnknown) {
   EXPECT_EQ(errors_of(PoseErrors{1, 2, std::nullopt, std::nullopt, {}}, false),
-            "1.0 2.0 null null null null null null");
+            "1.0 2.0 null null null null null null null null");
   EXPECT_EQ(errors_of(PoseErrors{1, 2, PointError{3, 1}, std::nullopt, {}}, true),
-            "1.0 2.0 3.0 1.0 null true 1.0 null");
+            "1.0 2.0 3.0 1.0 null null true 1.0 null null");
 }
 
 TEST(Dense, HasTheSameScores) {
@@ -194,8 +202,9 @@ TEST(Dense, HasTheSameScores) {
   EXPECT_EQ(lines_of(dense_csv({record, failed_record()})),
             (std::vector<std::string>{
                 "method,overlap_before,overlap,residual_before_pr,residual_pr,rotation_error_deg,translation_error_pr,"
-                "rmse_pr,mean_error_pr,add_share,success_5pr,success_from_pr,success_add,condition,status",
-                "gc,0,0.5,0,0.25,1,2,4,3,0.05,1,3,1,0,refined", "ss,,,,,,,,,,,,,,no pose to start from"}));
+                "rmse_pr,mean_error_pr,add_share,add_s_share,success_5pr,success_from_pr,success_add,success_add_s,"
+                "condition,status",
+                "gc,0,0.5,0,0.25,1,2,4,3,0.05,,1,3,1,,0,refined", "ss,,,,,,,,,,,,,,,,no pose to start from"}));
   EXPECT_THAT(dense_text({record}), HasSubstr("gc"));
 }
 

@@ -65,5 +65,39 @@ TEST(FieldCriteria, StandInTheSummaryWithQuantilesOfErrors) {
   EXPECT_EQ(summarize(experiment_tables(run)).at(0).of("refined_mean_error_pr_q75").value, 16);
 }
 
+TEST(FieldCriteria, AreAveragedOverScenesToo) {
+  ExperimentInfo info;
+  info.name = "e", info.dataset = "d", info.levels = {{"1", 1, 1}}, info.methods = {"gc"};
+  StudyFolder run;
+  run.experiments = {info};
+  const auto add = [&](const char* scene, double translation_pr) {
+    run.records.push_back(record_with(0, translation_pr, 0.125));
+    run.records.back().pair = "p" + std::to_string(run.records.size());
+    run.records.back().scene = scene;
+  };
+  for (const double error : {1, 1, 1, 9}) add("kitchen", error);  // 2.4 pr are 0.3 m
+  add("lounge", 9);
+  add("", 1);  // belongs to none
+  SummaryRow row = summarize(experiment_tables(run)).at(0);
+  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch").value, 4.0 / 6);
+  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch_scenes").value, (0.75 + 0) / 2);
+  EXPECT_DOUBLE_EQ(*row.of("success_3dmatch_rmse_scenes").value, (0.75 + 0) / 2);
+  run.records[4].refined = {};  // no pose is a failure there too
+  EXPECT_DOUBLE_EQ(*summarize(experiment_tables(run)).at(0).of("success_3dmatch_scenes").value, 0.375);
+  for (StudyRecord& record : run.records) record.scene = "";
+  EXPECT_FALSE(summarize(experiment_tables(run)).at(0).of("success_3dmatch_scenes").value);
+}
+
+TEST(FieldCriteria, AddSRecognisesBelowATenth) {
+  StudyRecord record = record_with(1, 1, 0.1);
+  EXPECT_FALSE(measure("success_add_s").of(record));
+  record.refined.add_s_share = 0.0999;
+  record.refined.add_share = 0.5;
+  EXPECT_EQ(measure("success_add_s").of(record), 1);
+  EXPECT_EQ(measure("success_add").of(record), 0);
+  record.refined.add_s_share = 0.1;
+  EXPECT_EQ(measure("success_add_s").of(record), 0);
+}
+
 }  // namespace
 }  // namespace corral

@@ -22,6 +22,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    "b3r",
                    "[0,0.5)",
                    "bunny, the",
+                   "kitchen",
                    "gc",
                    2,
                    0.25,
@@ -36,10 +37,11 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    2.0 / 3,
                    0.9,
                    0.0625,
-                   {1.5, 2.5, 3.5, 4.5, 0.1, 0.7},
-                   {0.1, 0.2, 0.3, 0.4, 5e-324, 1},
+                   {1.5, 2.5, 3.5, 4.5, 0.1, 0.7, 0.05},
+                   {0.1, 0.2, 0.3, 0.4, 5e-324, 1, 0.2},
                    {},
                    1e-9,
+                   40,
                    "s/x.csv"};
   const ScratchFolder folder;
   const std::string text = csv_line(record_columns()) + record_line(full) + record_line({});
@@ -126,7 +128,7 @@ TEST(StudyFolder, ReadsItsManifest) {
   put_text(folder / "records.csv", csv_line(record_columns()) + record_line({}));
   put_text(folder / "manifest.json", R"json({"experiments": [{"name": "noise", "title": "Noise", "figure": "a",
     "dataset": "b3r", "attribute": "noise_pr", "axis": "noise (pr)",
-    "levels": [{"label": "0.05", "low": 0.05, "high": 0.05}], "methods": ["ss", "gc"], "threshold_pr": 4,
+    "levels": [{"label": "0.05", "low": 0.05, "high": 0.05}], "methods": ["ss", "gc"], "foreign_methods": [], "threshold_pr": 4,
     "least_true_matches": 1}],
     "pairs": {"b3r/x": {"source": "a.ply", "target": "b.ply", "truth": "", "resolution": 0.5}}})json");
   const StudyFolder run = read_study(folder / "");

@@ -55,7 +55,7 @@ TEST(NearestError, DoesNotSeeASymmetry) {
 }
 
 TEST(NearestError, OfManyPointsTakesEveryKth) {
-  const Points points = random_points(10'001, 5);  // every third
+  const Points points = random_points(5'001, 5);  // every third
   const RigidTransform truth = about_z(0, {0, 0, 0}), estimate = about_z(0, {0.3, 0, 0});
   double sum = 0;
   int count = 0;
