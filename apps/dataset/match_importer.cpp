@@ -124,6 +124,8 @@ std::optional<RigidTransform> read_pair_truth(const PairFiles& files, const Matc
     truth = stored;
   } else if (!files.rotation.empty() && !files.translation.empty()) {
     truth = read_two(files.rotation, files.translation);
+  } else if (files.pose) {
+    truth = files.pose;
   }
   return truth && options.truth_is_inverse ? truth->inverse() : truth;
 }

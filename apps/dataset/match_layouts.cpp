@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "io/fragment_poses.h"
 #include "io/mesh_file.h"
 #include "io/named_arrays.h"
+#include "io/scan_pairs.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
@@ -232,26 +234,69 @@ Pairs find_3dmatch(const Tree& tree) {
   return pairs;
 }
 
+/// Scans of KITTI's odometry benchmark by sequence and number.
+class Scans {
+ public:
+  explicit Scans(const Tree& tree) {
+    static const std::regex pattern("(?:.*/)?([0-9]+)/velodyne/([0-9]+)\\.[^/]+");
+    std::smatch part;
+    for (const std::string& file : tree.files())
+      if (std::regex_match(file, part, pattern)) paths_[key(part[1], part[2])] = tree.path(file);
+  }
+  /// Empty if there is none.
+  std::string path(const std::string& sequence, const std::string& scan) const {
+    const auto found = paths_.find(key(sequence, scan));
+    return found == paths_.end() ? "" : found->second;
+  }
+
+ private:
+  static std::string number(const std::string& digits) {
+    return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+  }
+  static std::string key(const std::string& sequence, const std::string& scan) {
+    return number(sequence) + "/" + number(scan);
+  }
+
+  std::map<std::string, std::string> paths_;
+};
+
+std::string sequence_word(const std::string& sequence) {
+  return std::string(2 - std::min<std::size_t>(2, sequence.size()), '0') + sequence;
+}
+
+void add_listed(const Tree& tree, const std::string& list, const Scans& scans, Pairs& pairs) {
+  const std::string stem = fs::path(list).stem().string();
+  for (const ScanPair& entry : read_scan_list(tree.path(list))) {
+    const std::string from = std::to_string(entry.source_sequence), into = std::to_string(entry.target_sequence),
+                      source = std::to_string(entry.source), target = std::to_string(entry.target);
+    PairFiles pair = pair_of("", from + "_" + source + (from == into ? "" : "_" + into) + "_" + target);
+    pair.source = scans.path(from, source);
+    pair.target = scans.path(into, target);
+    if (pair.source.empty() || pair.target.empty()) continue;
+    pair.pose = entry.target_from_source;
+    pair.attributes = {{"scene", sequence_word(from)}, {"list", stem}};
+    pairs.push_back(std::move(pair));
+  }
+}
+
 Pairs find_kitti(const Tree& tree) {
   static const std::regex pattern("0*([0-9]+)_0*([0-9]+)_0*([0-9]+)\\.(npy|txt)");
-  const auto padded = [](const std::string& number, std::size_t length) {
-    return std::string(length - std::min(length, number.size()), '0') + number;
-  };
+  const Scans scans(tree);
   Pairs pairs;
   for (const std::string& file : tree.files()) {
     const std::string name = name_of(file);
     std::smatch part;
+    if (fs::path(file).extension() == ".txt" && is_scan_list(tree.path(file))) {
+      add_listed(tree, file, scans, pairs);
+      continue;
+    }
     if (!std::regex_match(name, part, pattern)) continue;
     PairFiles pair = pair_of("", part[1].str() + "_" + part[2].str() + "_" + part[3].str());
-    const std::string velodyne = padded(part[1], 2) + "/velodyne/";
-    for (const std::string& other : tree.files()) {
-      const std::string whole = "/" + other;
-      if (whole.find("/" + velodyne + padded(part[2], 6) + ".") != std::string::npos) pair.source = tree.path(other);
-      if (whole.find("/" + velodyne + padded(part[3], 6) + ".") != std::string::npos) pair.target = tree.path(other);
-    }
+    pair.source = scans.path(part[1], part[2]);
+    pair.target = scans.path(part[1], part[3]);
     if (pair.source.empty() || pair.target.empty()) continue;
     pair.truth = tree.path(file);
-    pair.attributes = {{"scene", padded(part[1], 2)}};
+    pair.attributes = {{"scene", sequence_word(part[1])}};
     pairs.push_back(std::move(pair));
   }
   return pairs;

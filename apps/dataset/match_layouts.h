@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "kernel/rigid_transform.h"
 
 namespace corral {
 
@@ -15,6 +18,7 @@ struct PairFiles {
   std::string source, target;                    ///< clouds
   std::string truth;                             ///< a pose as read_transform names it, source to target
   std::string rotation, translation;             ///< the same in two files
+  std::optional<RigidTransform> pose = {};       ///< the same, of a list of pairs
   std::string labels;
   std::vector<std::pair<std::string, std::string>> attributes = {};  ///< columns of pairs.csv with their cells
 };
@@ -30,7 +34,8 @@ const std::vector<std::string>& match_layouts();
 ///   npz      a file of arrays for each pair (SC2-PCR, PointDSC, GeoTransformer)
 ///   tcf      A_B_top3.match, A-B.pose, clouds A*.pcd, B*.pcd
 ///   3dmatch  gt.log of a scene, with its cloud_bin_N.ply or features cloud_bin_N_fcgf.npz; gt.info
-///   kitti    SEQUENCE_SOURCE_TARGET.npy or .txt: a pose, frame to frame, with velodyne/SOURCE.bin
+///   kitti    SEQUENCE_SOURCE_TARGET.npy or .txt: a pose, frame to frame; or a list of pairs as read_scan_list knows it;
+///            with SEQUENCE/velodyne/SOURCE.bin
 ///   corral   NAME.matches.csv, NAME.xf
 ///
 /// `layout` empty: the one that is there. Throws IoError if there is none, or several.

@@ -231,6 +231,23 @@ TEST_F(ImportTest, KittiScansWithTheirPoses) {
   EXPECT_TRUE(read_transform(place_ / ("set/" + pairs.rows[0][3])).rotation.isApprox(problem_.truth.rotation, 1e-9));
 }
 
+TEST_F(ImportTest, KittiScansOfAListOfPairs) {
+  put("k/test_0_10.txt",
+      "seq i seq_db j mot1\n8 0 8 11 0 -1 0 5.5 1 0 0 -2 0 0 1 0.25 0 0 0 1\n8 0 8 12 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
+      "1\n");
+  for (const char* scan : {"000000", "000011"})  // 12 is not there
+    put("k/sequences/08/velodyne/" + std::string(scan) + ".bin", raw<float>({0, 0, 0, 0, 1, 0, 0, 0}));
+  const Outcome outcome = place_.corral("import matches k -o set");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const CsvTable pairs = read_csv(place_ / "set/pairs.csv");
+  ASSERT_EQ(pairs.rows.size(), 1u);
+  EXPECT_EQ(pairs.rows[0][0], "8_0_11");
+  EXPECT_THAT(pairs.rows[0][1], HasSubstr("000000.bin"));
+  EXPECT_THAT(pairs.rows[0][2], HasSubstr("000011.bin"));
+  EXPECT_EQ(pairs.rows[0][std::size_t(pairs.column("list"))], "test_0_10");
+  EXPECT_EQ(read_transform(place_ / ("set/" + pairs.rows[0][3])).translation, Eigen::Vector3d(5.5, -2, 0.25));
+}
+
 TEST_F(ImportTest, AFolderOfNoneOrOfSeveralLayoutsIsRefused) {
   put("x/a.txt", "nothing");
   EXPECT_THAT(place_.corral("import matches x -o set").err, HasSubstr("no pairs of a known layout"));
