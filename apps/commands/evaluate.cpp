@@ -21,7 +21,7 @@ struct Settings {
   StudySettings study;
   std::optional<int> jobs;
   std::optional<std::string> shard;
-  bool json = false;
+  bool explain = false, json = false;
 };
 
 std::string times_text(const std::vector<TimeRow>& rows) {
@@ -70,12 +70,14 @@ int evaluate_pairs(const Settings& settings, const StudyCall& call, const WorkLi
   if (settings.json) {
     Json json = study_json(settings.study.run, outcome);
     if (settings.shard) json["shard"] = to_text(settings.study.shard);
+    if (settings.explain) json["explanation"] = explanation_json(outcome.losses);
     put("", json);
   } else if (settings.shard) {
     say("shard " + to_text(settings.study.shard) + ": " + counts_text(outcome) +
         "; when all shards are done: corral merge " + settings.study.run);
   } else {
     put("", overview_text(outcome.summary));
+    if (settings.explain) put("", "\n" + explanation_text(outcome.losses));
     say(counts_text(outcome) + "; the study is in " + settings.study.run);
   }
   return outcome.failed > 0 ? kPartial : kOk;
@@ -90,7 +92,7 @@ std::string command_line(const Settings& settings) {
   if (settings.jobs) line += " --jobs " + std::to_string(*settings.jobs);
   if (!settings.study.cache.empty()) line += " --cache " + settings.study.cache;
   if (settings.study.cache_limit > 0) line += " --cache-limit " + std::to_string(settings.study.cache_limit);
-  return line + (settings.json ? " --json" : "");
+  return line + (settings.explain ? " --explain" : "") + (settings.json ? " --json" : "");
 }
 
 int evaluate(Settings settings) {
@@ -100,6 +102,7 @@ int evaluate(Settings settings) {
     } catch (const InvalidInput& error) {
       throw UsageError(error.what());
     }
+  if (settings.shard && settings.explain) throw UsageError("--explain: not with --shard, but 'corral merge' has it");
   settings.study.jobs = settings.jobs.value_or(0);
   settings.study.command_line = command_line(settings);
   const StudyCall call = study_call(settings.options);
@@ -110,6 +113,7 @@ int evaluate(Settings settings) {
   if (list.experiments.size() > 1)
     throw UsageError("times are taken alone: evaluate the other experiments in another study");
   if (settings.shard) throw UsageError("--shard: not for times, which are compared on one machine");
+  if (settings.explain) throw UsageError("--explain: not for times, as they judge no pose");
   return evaluate_time(settings, list);
 }
 
@@ -147,6 +151,9 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FOLDER");
   add_size(*command, "--cache-limit", settings->study.cache_limit,
            "Most bytes of that folder, such as 20GB: what was used longest ago is deleted (default: no limit)");
+  command->add_flag("--explain", settings->explain,
+                    "Also the share of pairs that each grouper registers or loses, by the stage where: keypoints, "
+                    "matches, grouping, pose");
   command->add_flag("--json", settings->json, "A short summary as JSON instead of the table");
   command->footer(footer());
   command->callback([settings, &action] { action = [settings] { return evaluate(*settings); }; });

@@ -10,7 +10,7 @@ namespace {
 struct Settings {
   std::string study, data;
   std::vector<std::string> parts;
-  bool json = false;
+  bool explain = false, json = false;
 };
 
 int merge(const Settings& settings) {
@@ -20,9 +20,11 @@ int merge(const Settings& settings) {
   if (settings.json) {
     Json json = study_json(settings.study, outcome);
     json["notes"] = notes;
+    if (settings.explain) json["explanation"] = explanation_json(outcome.losses);
     put("", json);
   } else {
     put("", overview_text(outcome.summary));
+    if (settings.explain) put("", "\n" + explanation_text(outcome.losses));
   }
   say(counts_text(outcome) + "; the study is in " + settings.study);
   return outcome.failed > 0 ? kPartial : kOk;
@@ -40,6 +42,7 @@ void add_merge(CLI::App& app, Action& action) {
       ->type_name("PART");
   command->add_option("--data", settings->data, "Where the data sets are now (default: where the shards found them)")
       ->type_name("FOLDER");
+  command->add_flag("--explain", settings->explain, "Also where pairs were lost, as of 'corral evaluate'");
   command->add_flag("--json", settings->json, "A short summary as JSON instead of the table");
   command->footer(
       "The tables are those of one call of 'corral evaluate' without --shard, byte for byte but for the times.\n"

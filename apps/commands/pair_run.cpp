@@ -23,11 +23,10 @@ std::string misfit_of(const PairRun& run) {
   return (units.empty() ? "" : units + "; ") + run.fit->text();
 }
 
-void explain(PairRun& run, const Mesh& target) {
+void explain(PairRun& run) {
   const CorrespondenceSet& matches = run.pair.matches;
-  const Points seen =
-      points_in_overlap(matches.source_points, target, run.truth->target_from_source, matches.resolution);
-  run.counts = {matches.size(), static_cast<int>(seen.rows()), *run.true_matches(), run.truth->threshold_pr};
+  run.counts = {matches.size(), keypoints_in_overlap(matches, *run.truth), *run.true_matches(),
+                run.truth->threshold_pr};
   if (!run.fit->belongs()) run.counts.misfit = misfit_of(run);
   run.counts.opposed_share = run.opposed_share;
   run.counts.source_side = to_text(run.pair.report.source.normals);
@@ -126,7 +125,7 @@ PairRun evaluate(const RunSettings& settings) {
     dense.refine(run.records, run.truth);
     dense.refine(run.bounds, run.truth);
   }
-  if (settings.explain) explain(run, surfaces->target);
+  if (settings.explain) explain(run);
   return run;
 }
 

@@ -3,6 +3,7 @@
 #include "apps/runtime/output.h"
 
 #include <filesystem>
+#include <map>
 
 #include "apps/claims/claim_report.h"
 #include "apps/commands/commands.h"
@@ -13,6 +14,7 @@
 #include "apps/report/pair_gallery.h"
 #include "apps/report/study_figures.h"
 #include "apps/results/comparison.h"
+#include "apps/results/losses.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
 #include "io/file.h"
@@ -75,6 +77,18 @@ std::vector<std::string> write_figures(const StudyFigures& figures, const std::v
   return names;
 }
 
+/// For every experiment, where its pairs were lost.
+void write_losses(const std::vector<StudyFolder>& runs, const std::string& folder) {
+  std::map<std::string, std::vector<LossRow>> losses;
+  for (const StudyFolder& run : runs)
+    for (const LossRow& row : losses_of(run))
+      if (row.pairs > 0)  // those of a study of times judge no pose
+        losses[file_name_part(row.experiment) + "-" + file_name_part(row.dataset)].push_back(row);
+  std::vector<FileContent> files;
+  for (const auto& [name, rows] : losses) files.push_back({folder + kData + name + "-losses.csv", losses_text(rows)});
+  write_files(files);
+}
+
 /// Returns false and prints the reason if one of the pairs cannot be drawn.
 bool write_pictures(const GalleryPair& pair, const std::string& folder) {
   try {
@@ -109,6 +123,7 @@ int report(const Settings& settings) {
   for (const char* part : {kFigures, kScripts, kData, kTables}) make_folder(folder + part);
   if (!gallery.empty()) make_folder(pictures);
   const std::vector<std::string> names = write_figures(figures, rank_diagrams(studies), folder);
+  write_losses(runs, folder);
   Progress progress(40 + static_cast<double>(names.size()) + 40.0 * static_cast<double>(gallery.size()));
   progress.begin("page", 40);
   write_page(runs, studies, settings);

@@ -65,6 +65,38 @@ std::string overview_text(const std::vector<SummaryRow>& rows) {
          "most 5 pr. summary.csv has every level.\n";
 }
 
+std::string explanation_text(const std::vector<LossRow>& rows) {
+  std::vector<std::string> header = {"experiment", "grouper", "pairs"};
+  for (std::size_t stage = 0; stage < kStages; ++stage) header.push_back(to_text(static_cast<Stage>(stage)));
+  TextTable table(header);
+  for (const LossRow& row : over_levels(rows)) {
+    std::vector<std::string> line = {row.experiment, row.method, std::to_string(row.pairs)};
+    for (std::size_t stage = 0; stage < kStages; ++stage)
+      line.push_back(row.pairs > 0 ? fixed(row.share(static_cast<Stage>(stage)), 3) : "");
+    table.add(line);
+  }
+  return table.str() +
+         "Shares of all pairs with a truth, over all levels: registered by the refined pose (mean error of at most 5\n"
+         "pr), or lost: with fewer than 20 matched keypoints in the overlap; with too few correct matches, so that\n"
+         "not even all of them register the pair; by the selection of the grouper; by the refinement of its pose;\n"
+         "because the truth does not fit; because matching or grouper failed. --json has every level.\n";
+}
+
+Json explanation_json(const std::vector<LossRow>& rows) {
+  Json json = Json::array();
+  for (const LossRow& row : rows) {
+    Json& object = json.emplace_back(Json{{"experiment", row.experiment},
+                                          {"dataset", row.dataset},
+                                          {"level", row.level},
+                                          {"method", row.method},
+                                          {"pairs", row.pairs}});
+    for (std::size_t stage = 0; stage < kStages; ++stage)
+      object[to_text(static_cast<Stage>(stage))] =
+          row.pairs > 0 ? Json(row.share(static_cast<Stage>(stage))) : Json(nullptr);
+  }
+  return json;
+}
+
 Json study_json(const std::string& folder, const StudyOutcome& outcome) {
   return {{"run", folder},
           {"pairs", outcome.units},

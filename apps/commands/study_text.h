@@ -11,6 +11,10 @@ namespace corral {
 /// A table for the terminal: each grouper in each experiment, by its means over the levels.
 std::string overview_text(const std::vector<SummaryRow>& rows);
 
+/// Where the pairs of each grouper in each experiment were lost, over all levels; for scripts, at each level.
+std::string explanation_text(const std::vector<LossRow>& rows);
+Json explanation_json(const std::vector<LossRow>& rows);
+
 /// The counts and warnings of a study, for scripts.
 Json study_json(const std::string& folder, const StudyOutcome& outcome);
 

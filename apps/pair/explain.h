@@ -30,6 +30,32 @@ enum class Cause {
 /// "not converged", "spoiled", "no answer".
 const char* to_text(Cause cause);
 
+/// What the cause depends on, of a grouper or of the oracle on a pair.
+struct PairEnd {
+  bool is_registered_at_first = false;  ///< by the fit to the selection
+  bool is_registered = false;           ///< by the refined pose
+  MethodState state = MethodState::Unknown;
+  int correct = 0;       ///< of the selection
+  double precision = 0;  ///< of the selection; 0 if it is empty
+};
+PairEnd end_of(const MethodRecord& record);
+
+/// Of the pair itself, as the oracle ends on it. Keypoints are absent where a table of matches was given, opposed normals where
+/// nobody looked.
+struct PairState {
+  bool fits = true;  ///< the truth may belong to the pair
+  bool is_registered_by_oracle = false;
+  bool has_opposed_normals = false;
+  std::optional<int> keypoints_in_overlap = {};
+};
+
+/// The causes that explain_pair gives, by its rules.
+Cause cause_of(const PairState& pair);
+Cause cause_of(const PairEnd& method, Cause pair);
+
+/// How many of the matches start from a point in the overlap. The keypoints are vertices of the source.
+int keypoints_in_overlap(const CorrespondenceSet& matches, const PairTruth& truth);
+
 /// The number of source keypoints with a match, of those in the overlap, and of the matches that are correct within the
 /// threshold.
 struct PairCounts {

@@ -85,6 +85,7 @@ const std::vector<Measure> kOfSelections = {
     {"precision_nonempty", "precision of non-empty selections", "", 3, 1, Larger, {}, [](const R& r) { return r.precision; }, LeftOut, Mean},
     {"inlier_ratio",       "inlier ratio",  "", 3, 1, Larger, {}, inlier_ratio, LeftOut, Mean, kOfPair},
     {"frame_share",        "frame share",   "", 3, 1, Larger, number(&R::frame_share), nullptr, LeftOut, Mean, kOfPair},
+    {"keypoints_in_overlap", "keypoints in the overlap", "", 0, kAny, Larger, count(&R::keypoints_in_overlap), nullptr, LeftOut, None, kOfPair},
     {"metres_per_pr",      "metres per pr", "m", 4, kAny, Larger, number(&R::metres_per_pr), nullptr, LeftOut, None, kOfPair},
 };
 const std::vector<Measure> kOfCalls = {

@@ -31,6 +31,7 @@ struct StudyRecord {
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
   SharedText truth;             ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
+  std::optional<int> keypoints_in_overlap;  ///< of the matched ones; absent for a table of matches
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
   std::optional<double> metres_per_pr;   ///< where the data set is in metres: for the criteria that the field states so

@@ -65,6 +65,7 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
   if (!result.failure.empty()) common.status = {MethodState::Failed, result.failure};
   if (result.has_truth) {
     common.truth = result.truth;
+    common.keypoints_in_overlap = result.keypoints_in_overlap;
     common.true_matches = result.true_matches[threshold];
     common.frame_share = result.frame_share[threshold];
   }

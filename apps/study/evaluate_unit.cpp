@@ -7,6 +7,7 @@
 
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/explain.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/normal_sides.h"
 #include "apps/pair/read_surface.h"
@@ -121,6 +122,7 @@ class PairStudy {
     result.source_keypoints = stored_.source_keypoints;
     result.matches = matches_.size();
     result.has_truth = truth_.has_value();
+    if (truth_ && unit_.pair.matches.empty()) result.keypoints_in_overlap = keypoints_in_overlap(matches_, *truth_);
     if (fit_) result.truth = fit_->name(), result.truth_text = fit_->text();
     if (table_fit_) result.truth = table_fit_->name, result.truth_text = table_fit_->text;
     result.warnings = warnings_;

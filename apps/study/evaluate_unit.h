@@ -32,6 +32,7 @@ struct UnitResult {
   double resolution = 0;
   int source_points = 0, source_keypoints = 0;  ///< vertices of the source, and those that were keypoints
   int matches = 0;
+  std::optional<int> keypoints_in_overlap;  ///< of the matched ones, with a truth; absent for a table of matches
   bool has_truth = false;
   std::string truth, truth_text;                   ///< TruthFit::name and text; empty without a truth
   std::vector<std::string> warnings;               ///< of data that make results wrong

@@ -59,6 +59,7 @@ StudyOutcome finish_study(const WorkList& list, FinishedUnits& finished, const s
       manifest_text(list, finished.inputs(), {finished.results(), finished.machines(), command_line});
   finished.release_results();  // a large study needs the room
   outcome.summary = summarize(experiment_tables(run));
+  outcome.losses = losses_of(run);
   const std::filesystem::path place(folder);
   write_files({{(place / "records.csv").string(), records_text(run.records)},
                {(place / "summary.csv").string(), summary_text(outcome.summary)},

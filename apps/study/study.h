@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/results/losses.h"
 #include "apps/results/summary.h"
 #include "apps/study/shard.h"
 #include "apps/study/study_call.h"
@@ -36,6 +37,7 @@ struct StudyOutcome {
   std::vector<std::string> misfits;   ///< the pairs whose truth does not fit, each with what is wrong
   std::vector<std::string> warnings;  ///< of other data that make results wrong, with the pair
   std::vector<SummaryRow> summary;    ///< of a whole study
+  std::vector<LossRow> losses;        ///< likewise
 };
 
 /// Evaluates the remaining units of a study, or of a shard of it, and keeps each in a journal as soon as it is done. After

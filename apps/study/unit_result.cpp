@@ -76,6 +76,8 @@ UnitResult unit_result_of(const Json& json) {
   result.source_points = count_of(json.at("source_points"));
   result.source_keypoints = count_of(json.at("source_keypoints"));
   result.matches = count_of(json.at("matches"));
+  const Json& seen = json.at("keypoints_in_overlap");
+  if (!seen.is_null()) result.keypoints_in_overlap = count_of(seen);
   result.has_truth = json.at("has_truth");
   result.truth = json.at("truth");
   result.truth_text = json.at("truth_text");
@@ -98,6 +100,7 @@ Json to_json(const UnitResult& result) {
               {"source_points", result.source_points},
               {"source_keypoints", result.source_keypoints},
               {"matches", result.matches},
+              {"keypoints_in_overlap", json_or_null(result.keypoints_in_overlap)},
               {"has_truth", result.has_truth},
               {"truth", result.truth},
               {"truth_text", result.truth_text},

@@ -72,12 +72,13 @@ TEST_F(Evaluate, WritesARunThatReadsBack) {
 // One record is what 'corral run' says of the pair.
 TEST_F(Evaluate, AgreesWithRun) {
   ASSERT_EQ(evaluate("-o run").status, 0);
-  const auto methods =
+  const auto json =
       place_
           .corral(
               "run data/b3r/m2.ply data/b3r/m2-0.25.ply --truth data/b3r/m2-0.25.txt --json --detector "
-              "uniform --set uniform.spacing_pr=2.5 --set shot.radius_pr=8 --resolution source -o ran")
-          .json()["methods"];
+              "uniform --set uniform.spacing_pr=2.5 --set shot.radius_pr=8 --resolution source -o ran --explain")
+          .json();
+  const auto& methods = json["methods"];
   const auto report = nlohmann::json::parse(place_.text("ran/match_report.json"));
   const StudyPair pair = read_study(place_ / "run").pairs.at("b3r/m2-0.25");
   EXPECT_EQ(*pair.source_points, report["source"]["points"]);
@@ -88,6 +89,7 @@ TEST_F(Evaluate, AgreesWithRun) {
       if (record.pair == "m2-0.25" && method["method"] == record.method.str() && record.method != "ransac") {
         ++compared;
         EXPECT_EQ(*record.precision, method["precision"]);
+        EXPECT_EQ(*record.keypoints_in_overlap, json["explanation"]["keypoints_in_overlap"]);
         EXPECT_EQ(*record.refined.rmse_pr, method["rmse_pr"]) << method;
         EXPECT_EQ(*record.refined.mean_error_pr, method["mean_error_pr"]) << method;
       }
@@ -233,6 +235,31 @@ TEST_F(Evaluate, APairWhoseTruthDoesNotFitIsNamedAndCounted) {
   EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("misfit"))], "1");
   EXPECT_EQ(summary.rows[0][static_cast<std::size_t>(summary.column("excluded"))], "0");
   EXPECT_EQ(evaluate("-o run --json").json()["misfits"].size(), 1U) << "when it is repeated too";
+}
+
+TEST_F(Evaluate, ExplainsWherePairsAreLost) {
+  const RigidTransform truth = read_transform(place_ / "data/b3r/m1-0.05.txt");
+  place_.put("data/b3r/inverse.txt", transform_text(truth.inverse()));
+  place_.put("data/b3r/pairs.csv", replaced(place_.text("data/b3r/pairs.csv"), "m1-0.05.txt", "inverse.txt"));
+  const Outcome told = evaluate("-o run --explain");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out,
+              HasSubstr("experiment  grouper   pairs  registered  keypoints  matches  grouping   pose  truth"));
+  EXPECT_THAT(told.out,
+              ::testing::ContainsRegex("small       oracle        6       0.833      0.000    0.000     0.000"));
+  const auto json = evaluate("-o run --explain --json").json()["explanation"];
+  ASSERT_EQ(json.size(), 3u * (7 + 2));
+  for (const auto& row : json) {
+    EXPECT_EQ(row["pairs"], 2);
+    EXPECT_EQ(row["truth"], row["level"] == "0.05" ? 0.5 : 0);
+    double sum = 0;
+    for (const char* stage : {"registered", "keypoints", "matches", "grouping", "pose", "truth", "failed"})
+      sum += row[stage].get<double>();
+    EXPECT_DOUBLE_EQ(sum, 1) << row;
+  }
+  EXPECT_EQ(place_.corral("merge run --explain --json").json()["explanation"], json);
+  EXPECT_FALSE(evaluate("-o run --json").json().contains("explanation"));
+  EXPECT_EQ(evaluate("-o part --shard 1/2 --explain").status, 2);
 }
 
 TEST_F(Evaluate, AFolderOfAnotherRunIsRefused) {

@@ -32,6 +32,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    5,
                    4,
                    3,
+                   9,
                    0.75,
                    0.6,
                    2.0 / 3,
