@@ -155,6 +155,7 @@ TEST(Losses, RepeatsAreOnePairAndTablesOfOnePairAreSeveral) {
   EXPECT_EQ(rows_of(table)[0].of(Stage::Registered), 0.5);
   EXPECT_EQ(rows_of(table)[0].of(Stage::Grouping), 0.5);
   EXPECT_EQ(rows_of(records)[0].pairs, 2);
+  EXPECT_EQ(rows_of(records)[0].of(Stage::Registered), 1);
   EXPECT_EQ(rows_of(records)[1].pairs, 2);
 }
 
