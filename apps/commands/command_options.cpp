@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "apps/pair/evaluate_pair.h"
 #include "apps/pair/option_names.h"
 #include "apps/runtime/memory.h"
 #include "apps/runtime/output.h"
@@ -225,6 +226,22 @@ CLI::Option* add_size(CLI::App& command, const std::string& option, std::uint64_
     return std::string();
   };
   return command.add_option(option, bytes, purpose)->type_name("SIZE")->transform(CLI::Validator(to_bytes, ""));
+}
+
+void add_pose_options(CLI::App& command, std::string& rows, std::string& select) {
+  const auto add = [&](const char* option, std::string& value, const std::array<const char*, 2>& words,
+                       const char* purpose) {
+    command.add_option(option, value, purpose)
+        ->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end())))
+        ->type_name(std::string(words[0]) + "|" + words[1])
+        ->capture_default_str();
+  };
+  add("--rows", rows, kRows,
+      "Matches that poses are refined over. all: also over all matches, from the pose refined over the selection, in "
+      "columns of their own");
+  add("--select", select, kSelect,
+      "What chooses among the poses of a grouper. surface: how the two surfaces lie on each other under them, for "
+      "groupers that can keep poses");
 }
 
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {

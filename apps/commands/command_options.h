@@ -75,4 +75,7 @@ CLI::Option* add_size(CLI::App& command, const std::string& option, std::uint64_
 /// --memory-limit, in bytes; half of the machine unless it is given.
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes);
 
+/// --rows and --select: what is done with the poses of groupers beside the refinement of each selection (kRows, kSelect).
+void add_pose_options(CLI::App& command, std::string& rows, std::string& select);
+
 }  // namespace corral

@@ -7,6 +7,7 @@
 #include "apps/commands/run_report.h"
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/normal_sides.h"
+#include "apps/pair/surface_choice.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/pair/table_truth_fit.h"
 #include "apps/runtime/progress.h"
@@ -69,6 +70,12 @@ void compare_sides(PairRun& run, const Surfaces& surfaces, const MatchSettings& 
   if (is_opposed(run.opposed_share)) run.pair.report.warnings.push_back(opposed_warning(*run.opposed_share));
 }
 
+/// The options with the poses that a choice by surfaces needs.
+OptionsByName keeping_poses(const std::string& name, OptionsByName options) {
+  options[name] = with_kept_poses(name, options[name]);
+  return options;
+}
+
 }  // namespace
 
 std::vector<std::string> method_names(const std::string& text) {
@@ -90,7 +97,9 @@ PairRun evaluate(const RunSettings& settings) {
   PairRun run;
   run.methods = method_names(settings.methods);
   const OptionsByName options = parse_set(settings.set);
-  for (const std::string& name : run.methods) run.groupers.push_back(configure_grouper(name, options));
+  for (const std::string& name : run.methods)
+    run.groupers.push_back(
+        configure_grouper(name, settings.select == kSelect[1] ? keeping_poses(name, options) : options));
   keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, files_of_run(settings.output));
   std::optional<RigidTransform> truth;
   if (!settings.truth.empty()) truth = read_truth(settings.truth);
@@ -102,7 +111,8 @@ PairRun evaluate(const RunSettings& settings) {
     make_folder(settings.output);
     check_writable(settings.output + "/run.json");
   }
-  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense);
+  Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense +
+                    (settings.select == kSelect[1]));
   if (settings.matches.empty())
     run.pair = match_pair(surfaces->source, surfaces->target, settings.match,
                           {[&](const std::string& stage) { progress.begin(stage); }});
@@ -116,8 +126,17 @@ PairRun evaluate(const RunSettings& settings) {
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
   }
+  if (settings.select == kSelect[1]) {
+    progress.begin("choice by the surfaces");
+    choose_by_surfaces(run.records, SurfaceChoice(surfaces->source, surfaces->target, workers(settings.match.threads)),
+                       run.pair.matches, run.truth);
+  }
   if (truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
   if (truth && settings.matches.empty()) compare_sides(run, *surfaces, settings.match);
+  if (settings.rows == kRows[1]) {
+    refine_all_rows(run.records, run.pair.matches, run.truth);
+    refine_all_rows(run.bounds, run.pair.matches, run.truth);
+  }
   if (settings.dense) {
     progress.begin("dense refinement");
     DenseRefinement dense(surfaces->source, surfaces->target, run.pair.matches.resolution,

@@ -25,6 +25,7 @@ struct RunSettings {
   std::uint64_t memory_limit = 0;
   MatchSettings match;
   std::vector<std::string> set;
+  std::string rows = "selected", select = "score";
   bool drop_stray = false, dense = false, explain = false, json = false, verbose = false;
 };
 

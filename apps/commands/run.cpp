@@ -15,6 +15,8 @@ void check_inputs(const RunSettings& settings) {
   if (settings.source.empty() && settings.matches.empty())
     throw UsageError("expected two meshes, or --matches with a table of matches");
   if (settings.source.empty() && settings.dense) throw UsageError("--dense: needs two meshes beside --matches");
+  if (settings.source.empty() && settings.select == kSelect[1])
+    throw UsageError("--select surface: needs two meshes beside --matches");
   if (!settings.matches.empty() && settings.explain)
     throw UsageError("--explain: not with --matches, as it explains what became of keypoints");
 }
@@ -60,7 +62,9 @@ void add_run(CLI::App& app, Action& action) {
                    "A table of matches to group, alone or beside the two meshes (which then only judge poses)")
       ->type_name("FILE");
   add_truth_options(*command, settings->truth, ": adds scores and errors");
-  command->add_option("--methods", settings->methods, "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
+  command
+      ->add_option("--methods", settings->methods,
+                   "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")
@@ -69,6 +73,7 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_flag("--dense", settings->dense,
                     "Also refine every pose on the whole surfaces, reported in a table of its own");
+  add_pose_options(*command, settings->rows, settings->select);
   command->add_flag(
       "--explain", settings->explain,
       "Explain in words where the pair was registered or lost, before the grouping and by each grouper; needs --truth");

@@ -71,6 +71,8 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
                  {"threshold_pr", settings.threshold_pr},
                  {"overlap_points", run.truth ? Json(run.truth->overlap.rows()) : Json(nullptr)},
                  {"repeat", settings.repeat},
+                 {"rows", settings.rows},
+                 {"select", settings.select},
                  {"options", options}}}};
   if (settings.explain) json["explanation"] = explanation_json(run);
   return json;
@@ -112,6 +114,8 @@ void write_folder(const PairRun& run, const RunSettings& settings) {
 
 std::string in_words(const PairRun& run, const RunSettings& settings) {
   std::string text = heading(run, settings) + methods_text(run.records, run.bounds);
+  if (settings.rows == kRows[1])
+    text += "\nrefined over all matches, from there:\n" + all_rows_text(run.records, run.bounds);
   if (settings.dense) text += "\ndense refinement, points to planes:\n" + dense_text(run.records, run.bounds);
   if (settings.explain) text += "\n";
   if (run.truth && !run.fit)

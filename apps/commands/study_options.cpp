@@ -21,6 +21,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->type_name("FILE");
   add_set_option(command, options.set);
   command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
+  add_pose_options(command, options.rows, options.select);
 }
 
 StudyCall study_call(const StudyOptions& options) {
@@ -28,6 +29,8 @@ StudyCall study_call(const StudyOptions& options) {
   if (!options.methods.empty()) call.methods = {options.methods, read_file(options.methods)};
   call.options = parse_set(options.set);
   call.dense = options.dense;
+  call.all_rows = options.rows == kRows[1];
+  call.by_surface = options.select == kSelect[1];
   return call;
 }
 
@@ -45,6 +48,8 @@ std::vector<std::string> words_of(const StudyOptions& options) {
   if (!options.methods.empty()) words.insert(words.end(), {"--methods", options.methods});
   for (const std::string& option : options.set) words.insert(words.end(), {"--set", option});
   if (options.dense) words.push_back("--dense");
+  if (options.rows != kRows[0]) words.insert(words.end(), {"--rows", options.rows});
+  if (options.select != kSelect[0]) words.insert(words.end(), {"--select", options.select});
   return words;
 }
 

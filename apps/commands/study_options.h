@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/pair/evaluate_pair.h"
 #include "apps/study/study_call.h"
 
 namespace corral {
@@ -16,6 +17,7 @@ struct StudyOptions {
   std::string methods;  ///< file; may be empty
   std::vector<std::string> set;
   bool dense = false;
+  std::string rows = kRows[0], select = kSelect[0];
 };
 void add_study_options(CLI::App& command, StudyOptions& options);
 

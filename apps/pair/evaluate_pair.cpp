@@ -154,6 +154,16 @@ std::string too_large(const ConfiguredGrouper& grouper, int matches, double memo
   return "needs " + fixed(needed / 1e6, 1) + " MB, the limit is " + fixed(memory_limit / 1e6, 1) + " MB";
 }
 
+void refine_all_rows(std::vector<MethodRecord>& records, const CorrespondenceSet& matches,
+                     const std::optional<PairTruth>& truth) {
+  for (MethodRecord& record : records) {
+    if (!record.pose.target_from_source) continue;
+    record.all_rows = refine_over_all(matches, *record.pose.target_from_source);
+    if (truth && record.all_rows->target_from_source)
+      record.all_rows_errors = pose_errors(*record.all_rows->target_from_source, *truth, matches.resolution);
+  }
+}
+
 std::vector<MethodRecord> evaluate_bounds(const CorrespondenceSet& matches, const PairTruth& truth) {
   Indices all(static_cast<std::size_t>(matches.size()));
   std::iota(all.begin(), all.end(), 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -77,10 +78,12 @@ struct MethodRecord {
   std::optional<double> stated_time_ms;  ///< what another program says that it took
   std::optional<GroupingScore> score;    ///< with a truth
   RefinedPose pose;
-  std::optional<PoseErrors> initial_errors;  ///< of the least-squares fit to the selection, with a truth
-  std::optional<PoseErrors> errors;          ///< of the refined pose, with a truth
-  std::optional<RefinedSurface> dense;       ///< from the refined pose, where it was asked for
-  std::optional<PoseErrors> dense_errors;    ///< of its pose, with a truth
+  std::optional<PoseErrors> initial_errors;   ///< of the least-squares fit to the selection, with a truth
+  std::optional<PoseErrors> errors;           ///< of the refined pose, with a truth
+  std::optional<RefinedPose> all_rows;        ///< from the refined pose over all matches, where it was asked for
+  std::optional<PoseErrors> all_rows_errors;  ///< of its pose, with a truth
+  std::optional<RefinedSurface> dense;        ///< from the refined pose, where it was asked for
+  std::optional<PoseErrors> dense_errors;     ///< of its pose, with a truth
 
   /// "found": both the fit to the selection and the refined pose register the pair. "saved": only the refined pose does.
   /// "spoiled": only the fit does. "lost": neither does. Empty without a truth or an answer.
@@ -106,6 +109,13 @@ void judge(MethodRecord& record, const CorrespondenceSet& matches, const std::op
 
 /// Fills in the errors of the refined pose and of its start.
 void judge_pose(MethodRecord& record, const PairTruth& truth, double resolution);
+
+/// The words of --rows and --select; the first is the default.
+constexpr std::array<const char*, 2> kRows = {"selected", "all"}, kSelect = {"score", "surface"};
+
+/// Fills `all_rows` of every record that has a refined pose (refine_over_all), and with a truth its errors.
+void refine_all_rows(std::vector<MethodRecord>& records, const CorrespondenceSet& matches,
+                     const std::optional<PairTruth>& truth);
 
 /// The selections of a perfect grouper and of none: "oracle" selects all correct matches, "baseline" all matches. Scored,
 /// refined and judged as those of the groupers, without a time.

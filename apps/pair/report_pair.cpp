@@ -24,6 +24,15 @@ const std::vector<TableColumn> kMethodColumns = {{"grouper", "method"},
                                                  {"outcome", "outcome"},
                                                  {"status", "status"}};
 
+const std::vector<TableColumn> kAllRowsColumns = {{"grouper", "method"},
+                                                  {"rot err deg", "rotation_error_deg", 3},
+                                                  {"transl err pr", "translation_error_pr", 3},
+                                                  {"mean err pr", "mean_error_pr", 3},
+                                                  {"RMSE pr", "rmse_pr", 3},
+                                                  {"ADD", "add_share", 4},
+                                                  {"change", "change"},
+                                                  {"status", "status"}};
+
 const std::vector<TableColumn> kDenseColumns = {{"grouper", "method"},
                                                 {"overlap before", "overlap_before", 3},
                                                 {"overlap", "overlap", 3},
@@ -67,6 +76,19 @@ Json dense_row(const MethodRecord& record) {
   add_errors(row, "", record.dense_errors, record.dense && record.score);
   row["condition"] = number(dense.condition);
   row["status"] = record.dense ? to_text(record.dense->status) : "no pose to start from";
+  return row;
+}
+
+/// The result of the refinement over all matches.
+Json all_rows_row(const MethodRecord& record) {
+  Json row = {{"method", record.method}};
+  add_errors(row, "", record.all_rows_errors, record.all_rows && record.score);
+  const bool before = is_registered(record.errors), after = is_registered(record.all_rows_errors);
+  row["change"] = record.score && record.all_rows ? Json(before == after ? "none"
+                                                         : after         ? "gained"
+                                                                         : "lost")
+                                                  : Json(nullptr);
+  row["status"] = record.all_rows ? to_text(record.all_rows->status) : "no pose to start from";
   return row;
 }
 
@@ -190,6 +212,12 @@ Json pose_json(const MethodRecord& record) {
 
 Json to_json(const MethodRecord& record) {
   Json json = method_row(record);
+  if (record.all_rows) {
+    json["all_rows"] = all_rows_row(record);
+    json["all_rows"].erase("method");
+    json["all_rows"]["pose"] =
+        record.all_rows->target_from_source ? to_json(*record.all_rows->target_from_source) : Json(nullptr);
+  }
   if (!record.dense) return json;
   json["dense"] = dense_row(record);
   json["dense"]["pose"] = record.dense->target_from_source ? to_json(*record.dense->target_from_source) : Json(nullptr);
@@ -201,6 +229,10 @@ std::string methods_text(const std::vector<MethodRecord>& records, const std::ve
 }
 
 std::string methods_csv(const std::vector<MethodRecord>& records) { return csv_of(records, method_row); }
+
+std::string all_rows_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
+  return full_columns_text(rows_of(records, bounds, all_rows_row), kAllRowsColumns);
+}
 
 std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds) {
   return full_columns_text(rows_of(records, bounds, named_dense_row), kDenseColumns);

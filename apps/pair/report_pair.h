@@ -30,6 +30,9 @@ std::string methods_text(const std::vector<MethodRecord>& records, const std::ve
 /// The rows for scripts: the keys of to_json are the columns, exact numbers, 1 and 0, empty where undefined.
 std::string methods_csv(const std::vector<MethodRecord>& records);
 
+/// The same of the refinement over all matches: `change` is "gained" or "lost" where it decides whether the pair is registered.
+std::string all_rows_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
+
 /// The same of the dense refinement.
 std::string dense_text(const std::vector<MethodRecord>& records, const std::vector<MethodRecord>& bounds = {});
 std::string dense_csv(const std::vector<MethodRecord>& records);

@@ -43,4 +43,21 @@ GroupingResult SurfaceChoice::operator()(const CorrespondenceSet& matches, const
   return chosen;
 }
 
+void choose_by_surfaces(std::vector<MethodRecord>& records, const SurfaceChoice& choose,
+                        const CorrespondenceSet& matches, const std::optional<PairTruth>& truth) {
+  for (MethodRecord& record : records) {
+    if (!record.failure.empty() || record.found.runner_up.empty()) continue;
+    record.found = choose(matches, record.found);
+    judge(record, matches, truth);
+  }
+}
+
+OptionOverrides with_kept_poses(const std::string& grouper, OptionOverrides options) {
+  const Grouper* entry = look_up(groupers(), grouper);
+  if (!entry) return options;
+  for (const OptionValue& option : entry->options)
+    if (option.name == "keep") options.try_emplace("keep", std::to_string(kPosesForSurfaces));
+  return options;
+}
+
 }  // namespace corral

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "apps/pair/evaluate_pair.h"
 #include "grouping/grouper.h"
+#include "kernel/options.h"
 #include "kernel/parallel.h"
 #include "kernel/surface/mesh/mesh.h"
 #include "kernel/surface/scan/surface_coverage.h"
@@ -25,5 +27,13 @@ class SurfaceChoice {
  private:
   SurfaceCoverage coverage_;
 };
+
+/// Replaces what every grouper found by this choice, scored, refined and judged anew. Times are of the grouping alone.
+void choose_by_surfaces(std::vector<MethodRecord>& records, const SurfaceChoice& choose,
+                        const CorrespondenceSet& matches, const std::optional<PairTruth>& truth);
+
+/// The options of a grouper with the poses that the choice needs: kPosesForSurfaces, if it can keep poses and is not told how
+/// many.
+OptionOverrides with_kept_poses(const std::string& grouper, OptionOverrides options);
 
 }  // namespace corral

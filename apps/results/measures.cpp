@@ -37,6 +37,15 @@ Number success(const R& record) {
   return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
 }
 
+/// Whether the refinement over all matches gains or loses the pair; absent where it was not asked for.
+template <bool IsGain>
+Number changed_by_all_rows(const R& record) {
+  const Number after = success<&R::all_rows>(record);
+  if (!after) return std::nullopt;
+  const bool before = success<&R::refined>(record).value_or(0) > 0;
+  return (IsGain ? !before && *after > 0 : before && *after == 0) ? 1 : 0;
+}
+
 /// A criterion of the field, on the refined pose: largest rotation error (degrees) and translation error (metres).
 template <int Rotation, int Centimetres>
 Number within(const R& record) {
@@ -94,6 +103,10 @@ const std::vector<Measure> kOfCalls = {
     {"success_area",        "success area",    "", 3, 1, Larger, {}, area, Zero, Mean},
     {"initial_success_5pr", "initial success", "", 3, 1, Larger, {}, success<&R::initial>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},
+    {"all_rows_success_5pr", "success over all rows", "", 3, 1, Larger, {}, success<&R::all_rows>, Zero, Mean,
+     kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, refined over all rows"},
+    {"all_rows_gained",      "gained over all rows",  "", 3, 1, Larger,  {}, changed_by_all_rows<true>,  Zero, Mean, kYesOrNo | kIfTried},
+    {"all_rows_lost",        "lost over all rows",    "", 3, 1, Smaller, {}, changed_by_all_rows<false>, Zero, Mean, kYesOrNo | kIfTried},
     {"dense_success_5pr",   "dense success",   "", 3, 1, Larger, {}, success<&R::dense>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo | kIfTried, "aligned within 5 pr, dense"},
     {"success_3dmatch",     "3DMatch: 15 deg, 30 cm", "", 3, 1, Larger, {}, within<15, 30>,   Zero, Mean, kYesOrNo | kIfTried},
@@ -138,6 +151,7 @@ std::vector<Measure> make_table() {
   std::vector<Measure> table = kOfSelections;
   add_pose(table, "initial", &R::initial);
   add_pose(table, "refined", &R::refined);
+  add_pose(table, "all_rows", &R::all_rows);
   add_pose(table, "dense", &R::dense);
   table.insert(table.end(), kOfCalls.begin(), kOfCalls.end());
   return table;

@@ -67,7 +67,7 @@ PairSelections read_selections(const std::string& path);
 std::string selections_text(const PairSelections& selections, const std::vector<std::string>& methods);
 
 /// The poses of the groupers on a pair: `<selections without .csv>.poses.csv`, lines method,stage (initial, refined,
-/// dense), then the twelve numbers of [R | t] row by row.
+/// all rows, dense), then the twelve numbers of [R | t] row by row.
 struct StudyPose {
   std::string method, stage;
   RigidTransform target_from_source;

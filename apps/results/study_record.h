@@ -31,14 +31,15 @@ struct StudyRecord {
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
   SharedText truth;             ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
-  std::optional<int> keypoints_in_overlap;  ///< of the matched ones; absent for a table of matches
+  std::optional<int> keypoints_in_overlap;      ///< of the matched ones; absent for a table of matches
   std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
   std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
-  std::optional<double> metres_per_pr;   ///< where the data set is in metres: for the criteria that the field states so
-  PoseScores initial, refined, dense;    ///< of the fit to the selection, the refined and the dense pose
-  std::optional<double> time_ms;         ///< of the grouping alone
-  std::optional<double> stated_time_ms;  ///< of a method of another program, as that says
-  SharedText selection;                  ///< file of selections in the study folder; empty if there is none
+  std::optional<double> metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
+  PoseScores initial, refined, all_rows, dense;  ///< of the fit to the selection, the refined pose, and from there
+                                                 ///< over all matches and over the whole surfaces
+  std::optional<double> time_ms;                 ///< of the grouping alone
+  std::optional<double> stated_time_ms;          ///< of a method of another program, as that says
+  SharedText selection;                          ///< file of selections in the study folder; empty if there is none
 };
 
 /// The names of the columns, in order.

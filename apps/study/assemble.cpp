@@ -43,6 +43,7 @@ StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t thres
   record.selected = task.selected;
   record.initial = task.initial;
   record.refined = task.refined;
+  record.all_rows = task.all_rows;
   record.dense = task.dense;
   record.time_ms = task.time_ms;
   record.stated_time_ms = task.stated_time_ms;

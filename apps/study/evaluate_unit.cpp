@@ -11,6 +11,7 @@
 #include "apps/pair/match_pair.h"
 #include "apps/pair/normal_sides.h"
 #include "apps/pair/read_surface.h"
+#include "apps/pair/surface_choice.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/pair/table_truth_fit.h"
 #include "apps/pair/truth_fit.h"
@@ -27,7 +28,7 @@ namespace {
 
 /// Part of every key, to be changed with the format of the results; another commit of the program also computes everything
 /// again.
-constexpr char kFormat[] = "corral study 5";
+constexpr char kFormat[] = "corral study 6";
 
 std::string key_of(const std::vector<std::string>& parts) {
   static const std::string program = "\n" + build_info().version + " " + build_info().commit;
@@ -116,6 +117,8 @@ class PairStudy {
       const ConfiguredGrouper grouper = find_grouper(task.method).configure(task.options);
       records_.push_back(evaluate_method(task.method, grouper, matches_, truth_, 1));
     }
+    if (unit_.by_surface && surfaces_)
+      choose_by_surfaces(records_, SurfaceChoice(surfaces_->source, surfaces_->target), matches_, truth_);
     UnitResult result;
     result.resolution = matches_.resolution;
     if (surfaces_) result.source_points = static_cast<int>(surfaces_->source.vertices.rows());
@@ -127,6 +130,10 @@ class PairStudy {
     if (table_fit_) result.truth = table_fit_->name, result.truth_text = table_fit_->text;
     result.warnings = warnings_;
     std::vector<MethodRecord> bounds = evaluate_all_bounds();
+    if (unit_.all_rows) {
+      refine_all_rows(records_, matches_, truth_);
+      refine_all_rows(bounds, matches_, truth_);
+    }
     if (unit_.dense && surfaces_) {
       DenseRefinement dense(surfaces_->source, surfaces_->target, matches_.resolution);
       dense.refine(records_, truth_);
@@ -161,6 +168,7 @@ class PairStudy {
         };
         add("initial", record.pose.initial);
         add("refined", record.pose.target_from_source);
+        if (record.all_rows) add("all rows", record.all_rows->target_from_source);
         if (record.dense) add("dense", record.dense->target_from_source);
       }
       files.push_back({file, selections_text(selections, methods)});
@@ -230,6 +238,7 @@ class PairStudy {
     }
     result.initial = pose_scores(record.initial_errors);
     result.refined = pose_scores(record.errors);
+    result.all_rows = pose_scores(record.all_rows_errors);
     result.dense = pose_scores(record.dense_errors);
     return result;
   }

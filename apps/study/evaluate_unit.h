@@ -21,7 +21,7 @@ struct TaskResult {
   std::vector<int> correct;     ///< at each threshold; empty without a truth
   std::vector<int>
       true_matches;  ///< at each threshold, under the truth by which `correct` counts; empty: those of the unit
-  PoseScores initial, refined, dense;
+  PoseScores initial, refined, all_rows, dense;
   std::optional<double> time_ms, stated_time_ms;
 };
 

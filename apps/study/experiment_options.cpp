@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/pair/option_names.h"
+#include "apps/pair/surface_choice.h"
 #include "grouping/registry.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -23,10 +24,11 @@ void set_choice(MatchSettings& matching, const std::string& name, const std::str
 OptionOverrides options_at(const Experiment& experiment, const std::string& name, const StudyLevel& level) {
   const auto found = experiment.options.find(name);
   OptionOverrides options = found == experiment.options.end() ? OptionOverrides() : found->second;
-  if (experiment.sweep != Sweep::Option) return options;
-  const auto [swept, option] = split_option(experiment.info.attribute);
-  if (swept == name) options[option] = level.label;
-  return options;
+  if (experiment.sweep == Sweep::Option) {
+    const auto [swept, option] = split_option(experiment.info.attribute);
+    if (swept == name) options[option] = level.label;
+  }
+  return experiment.by_surface ? with_kept_poses(name, std::move(options)) : options;
 }
 
 MatchSettings matching_at(const Experiment& experiment, const StudyLevel& level) {

@@ -58,6 +58,8 @@ Json to_json(const Experiment& experiment) {
           {"repeats", experiment.repeats},
           {"seed", experiment.seed},
           {"dense", experiment.dense},
+          {"all_rows", experiment.all_rows},
+          {"by_surface", experiment.by_surface},
           {"tables", experiment.tables}};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/pair/evaluate_pair.h"
 #include "apps/pair/option_names.h"
 #include "apps/runtime/embedded_files.h"
 #include "apps/study/experiment_options.h"
@@ -202,6 +203,14 @@ void check_experiment(const TomlTable& table, const Experiment& experiment) {
     table.fail("vary", experiment.varied + " is an option of what is not in use");
 }
 
+/// Whether a key has the second of two words; the first is the default.
+bool is_second(const TomlTable& table, const std::string& key, const std::array<const char*, 2>& words) {
+  const std::string word = table.text(key).value_or(words[0]);
+  if (word != words[0] && word != words[1])
+    table.fail(key, "found " + corral::quoted(word) + ", expected " + words[0] + " or " + words[1]);
+  return word == words[1];
+}
+
 }  // namespace
 
 std::string bin_label(double low, double high, bool is_last) {
@@ -212,7 +221,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   const TomlTable table = TomlTable::parse(path, text);
   table.only({"name",    "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
               "bins",    "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
-              "repeats", "seed",   "dense",  "tables",   "vary"});
+              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select"});
   if (table.text("preset").value_or("paper") != "paper")
     table.fail("preset", "expected \"paper\": every option at its default, the values of the paper's Table 1");
   Experiment experiment;
@@ -241,6 +250,8 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   experiment.tables = whole_number(table, "tables", experiment.tables, 1);
   experiment.seed = static_cast<std::uint64_t>(whole_number(table, "seed", 1, 0));
   experiment.dense = table.flag("dense").value_or(false);
+  experiment.all_rows = is_second(table, "rows", kRows);
+  experiment.by_surface = is_second(table, "select", kSelect);
   experiment.filters = read_filters(table);
   read_matching(table, experiment);
   read_options(table, experiment);

@@ -54,6 +54,8 @@ struct Experiment {
   int repeats = 1;  ///< of stochastic groupers; of all groupers for times
   std::uint64_t seed = 1;
   bool dense = false;                  ///< also refine on the whole surfaces
+  bool all_rows = false;               ///< also refine over all matches
+  bool by_surface = false;             ///< surfaces choose among the poses of a grouper (SurfaceChoice)
   int tables = 1;                      ///< of Sweep::TableSize: pairs whose tables are timed
   std::vector<ForeignMethod> foreign;  ///< behind the groupers in `info.methods`
 };

@@ -19,9 +19,12 @@ WorkList work_list_of(const StudyCall& call) {
   std::vector<Experiment> experiments;
   for (const auto& [path, text] : call.experiments) {
     experiments.push_back(parse_experiment(path, text));
-    experiments.back().dense = experiments.back().dense || call.dense;
-    override_options(experiments.back(), call.options);
-    if (call.methods) add_methods(experiments.back(), parse_methods(call.methods->path, call.methods->text));
+    Experiment& experiment = experiments.back();
+    experiment.dense = experiment.dense || call.dense;
+    experiment.all_rows = experiment.all_rows || call.all_rows;
+    experiment.by_surface = experiment.by_surface || call.by_surface;
+    override_options(experiment, call.options);
+    if (call.methods) add_methods(experiment, parse_methods(call.methods->path, call.methods->text));
   }
   return make_work_list(std::move(experiments), call.data);
 }
@@ -33,11 +36,9 @@ Json to_json(const StudyCall& call) {
   Json experiments = Json::array(), methods = nullptr;
   if (call.methods) methods = {{"path", absolute(call.methods->path)}, {"text", call.methods->text}};
   for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
-  return {{"experiments", experiments},
-          {"methods", methods},
-          {"data", absolute(call.data)},
-          {"options", call.options},
-          {"dense", call.dense}};
+  return {{"experiments", experiments},   {"methods", methods},  {"data", absolute(call.data)},
+          {"options", call.options},      {"dense", call.dense}, {"all_rows", call.all_rows},
+          {"by_surface", call.by_surface}};
 }
 
 StudyCall study_call_of(const Json& json) {
@@ -48,6 +49,8 @@ StudyCall study_call_of(const Json& json) {
   call.data = json.at("data");
   call.options = json.at("options").get<OptionsByName>();
   call.dense = json.at("dense");
+  call.all_rows = json.at("all_rows");
+  call.by_surface = json.at("by_surface");
   return call;
 }
 

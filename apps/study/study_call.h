@@ -15,11 +15,11 @@ struct StudyCall {
   struct NamedText {
     std::string path, text;
   };
-  std::vector<NamedText> experiments;  ///< as read: files, or built-in experiments
-  std::optional<NamedText> methods;    ///< methods of other programs, for every experiment
-  std::string data;                    ///< a data set, or a folder of data sets
-  OptionsByName options;               ///< of --set
-  bool dense = false;
+  std::vector<NamedText> experiments;                        ///< as read: files, or built-in experiments
+  std::optional<NamedText> methods;                          ///< methods of other programs, for every experiment
+  std::string data;                                          ///< a data set, or a folder of data sets
+  OptionsByName options;                                     ///< of --set
+  bool dense = false, all_rows = false, by_surface = false;  ///< as of Experiment, for all of them
 };
 
 /// Reads the experiments (files, or names of built-in ones). Throws IoError.

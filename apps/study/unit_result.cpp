@@ -45,6 +45,7 @@ Json to_json(const TaskResult& task) {
           {"true_matches", task.true_matches},
           {"initial", to_json(task.initial)},
           {"refined", to_json(task.refined)},
+          {"all_rows", to_json(task.all_rows)},
           {"dense", to_json(task.dense)},
           {"time_ms", json_or_null(task.time_ms)},
           {"stated_time_ms", json_or_null(task.stated_time_ms)}};
@@ -61,6 +62,7 @@ TaskResult task_of(const Json& json) {
   task.true_matches = counts_of(json.at("true_matches"));
   task.initial = pose_scores_of(json.at("initial"));
   task.refined = pose_scores_of(json.at("refined"));
+  task.all_rows = pose_scores_of(json.at("all_rows"));
   task.dense = pose_scores_of(json.at("dense"));
   task.time_ms = number_of(json.at("time_ms"));
   task.stated_time_ms = number_of(json.at("stated_time_ms"));

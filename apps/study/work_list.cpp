@@ -69,6 +69,7 @@ std::string setting_label(const Experiment& experiment, const WorkUnit& unit, co
   for (const Grouper& grouper : groupers())
     for (const auto& [name, value] : options_at(experiment, grouper.name, level))
       text += grouper.name + "." + name + "=" + value + "\n";
+  if (experiment.by_surface) text += "by surface\n";
   const MatchSettings& matching = unit.matching;
   const OptionValue length = keypoint_length(matching);
   MatchSettings usual;
@@ -191,9 +192,10 @@ class Collector {
 
   void add_sample(StudySample sample, const Dataset& dataset, int pair, const MatchSettings& matching) {
     const Experiment& experiment = list_.experiments[static_cast<std::size_t>(sample.experiment)];
-    const auto [place, is_new] = units_.try_emplace(
-        UnitKey{dataset.name, pair, parse_double(keypoint_length(matching).value).value_or(0), matching_text(matching)},
-        list_.units.size());
+    const auto [place, is_new] =
+        units_.try_emplace(UnitKey{dataset.name, pair, parse_double(keypoint_length(matching).value).value_or(0),
+                                   matching_text(matching) + (experiment.by_surface ? " by surface" : "")},
+                           list_.units.size());
     sample.unit = place->second;
     if (is_new) {
       DatasetPair files = dataset.with_paths(dataset.pairs[static_cast<std::size_t>(pair)]);
@@ -202,6 +204,8 @@ class Collector {
     }
     WorkUnit& unit = list_.units[static_cast<std::size_t>(sample.unit)];
     unit.dense = unit.dense || experiment.dense;
+    unit.all_rows = unit.all_rows || experiment.all_rows;
+    unit.by_surface = experiment.by_surface;
     const auto at = std::lower_bound(unit.thresholds_pr.begin(), unit.thresholds_pr.end(), sample.threshold_pr);
     if (at == unit.thresholds_pr.end() || *at != sample.threshold_pr)
       unit.thresholds_pr.insert(at, sample.threshold_pr);
@@ -285,6 +289,8 @@ std::string unit_text(const WorkUnit& unit) {
                        {"tasks", tasks},
                        {"thresholds_pr", unit.thresholds_pr},
                        {"dense", unit.dense},
+                       {"all_rows", unit.all_rows},
+                       {"by_surface", unit.by_surface},
                        {"selections", selections}});
 }
 

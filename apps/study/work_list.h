@@ -37,6 +37,7 @@ struct WorkUnit {
   bool is_in_metres = false;                           ///< the data set says so
   bool shares_source = false, shares_target = false;   ///< another unit describes that mesh in the same way
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
+  bool all_rows = false, by_surface = false;           ///< as of Experiment
   std::string scene = {};                              ///< scene_of the pair
 
   /// Those of the pair, then those of the answers of other programs.

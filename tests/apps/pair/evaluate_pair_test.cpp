@@ -20,7 +20,7 @@ namespace {
 using ::testing::ElementsAre;
 
 ConfiguredGrouper selecting(const Indices& rows) {
-  return {[rows](const CorrespondenceSet&) { return GroupingResult{rows, {}, std::nullopt}; }, {}};
+  return {[rows](const CorrespondenceSet&) { return GroupingResult{rows, {}, std::nullopt, {}, {}}; }, {}};
 }
 
 template <class Error>
@@ -117,7 +117,7 @@ TEST(TimeGrouping, GivesTheFirstAnswerAndTheMedianTime) {
   const auto group = [&](const CorrespondenceSet&) {
     const int call = calls++;
     std::this_thread::sleep_for(std::chrono::milliseconds(call == 1 ? 200 : 2));
-    return GroupingResult{{call}, {}, std::nullopt};
+    return GroupingResult{{call}, {}, std::nullopt, {}, {}};
   };
   const TimedGrouping timed = time_grouping(group, CorrespondenceSet(), 3);
   EXPECT_EQ(calls, 3);

@@ -53,7 +53,7 @@ TEST_F(Foreign, LabelsAreScoredAndRefinedAsTheSelectionOfAGrouper) {
   Indices rows = made_.inliers;
   rows.resize(40);
   const ConfiguredGrouper grouper = {[&](const CorrespondenceSet&) {
-                                       return GroupingResult{rows, {}, std::nullopt};
+                                       return GroupingResult{rows, {}, std::nullopt, {}, {}};
                                      },
                                      {}};
   const MethodRecord own = evaluate_method("own", grouper, made_.matches, truth_, 1);

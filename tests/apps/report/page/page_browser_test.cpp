@@ -35,6 +35,7 @@ struct Desk {
                               "noise (pr)",
                               {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.4", 0.4, 0.4}},
                               {"ss", "nnsr", "gc"},
+                              {},
                               4,
                               1};
     std::vector<StudyCase> cases;
