@@ -28,9 +28,6 @@ void check_writable(const std::string& path);
 /// Removes a file that an earlier call left, if it exists. Pipes and devices stay. Throws IoError.
 void remove_file(const std::string& path);
 
-/// Whether a file of this name is one that a call is writing, or that a killed one left.
-bool is_temporary(const std::string& name);
-
 /// Removes the temporary files that killed calls left in a folder and its subfolders. Throws IoError if the folder cannot be
 /// read.
 void remove_leftovers(const std::string& folder);

@@ -16,6 +16,11 @@ void fail_by_errno(const std::string& path, const std::string& action) {
   throw SystemError(path, "", "cannot " + action + " (" + std::strerror(errno) + ")");
 }
 
+void fail_by_code(const std::string& path, const std::string& action, const std::error_code& reason) {
+  errno = reason.value();
+  fail_by_errno(path, action);
+}
+
 OpenFile::OpenFile(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {
   if (descriptor_ < 0) fail_by_errno(path_, "be opened");
 }

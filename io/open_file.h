@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <system_error>
 
 #include "kernel/error.h"
 
@@ -15,6 +16,8 @@ struct SystemError : IoError {
 
 /// Throws SystemError "PATH: cannot ACTION (REASON)" with the reason in errno.
 [[noreturn]] void fail_by_errno(const std::string& path, const std::string& action);
+/// The same with another reason.
+[[noreturn]] void fail_by_code(const std::string& path, const std::string& action, const std::error_code& reason);
 
 /// A descriptor of the system with the name of its file, closed at the end of its life.
 class OpenFile {

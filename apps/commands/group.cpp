@@ -35,7 +35,7 @@ struct Grouped {
 TimedGrouping time_on_terminal(const std::string& method, const ConfiguredGrouper& grouper,
                                const CorrespondenceSet& matches, int repeat) {
   Progress progress(1);
-  progress.begin(method + " on " + std::to_string(matches.size()) + " matches");
+  progress.begin(call_text(method, matches.size(), repeat));
   return time_grouping(grouper.group, matches, repeat);
 }
 

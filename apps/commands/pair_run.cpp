@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/pair_run.h"
 
+#include <cmath>
 #include <sstream>
 
 #include "apps/commands/command_files.h"
@@ -12,6 +13,7 @@
 #include "apps/pair/table_truth_fit.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
+#include "apps/study/plan.h"
 #include "io/file.h"
 #include "io/matches_file.h"
 
@@ -93,6 +95,13 @@ std::vector<std::string> method_names(const std::string& text) {
   return names;
 }
 
+std::string call_text(const std::string& method, int matches, int repeat) {
+  constexpr double kLong = 10;
+  const double seconds = repeat * 1e-9 * static_cast<double>(call_nanoseconds(method, static_cast<std::uint64_t>(matches)));
+  const std::string text = method + " on " + std::to_string(matches) + " matches";
+  return seconds < kLong ? text : text + ", expected to take about " + std::to_string(std::lround(seconds)) + " s";
+}
+
 PairRun evaluate(const RunSettings& settings) {
   PairRun run;
   run.methods = method_names(settings.methods);
@@ -122,7 +131,7 @@ PairRun evaluate(const RunSettings& settings) {
     judge_truth(run, *truth, surfaces, settings.threshold_pr);
   }
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
-    progress.begin(run.methods[i]);
+    progress.begin(call_text(run.methods[i], run.pair.matches.size(), settings.repeat));
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
   }

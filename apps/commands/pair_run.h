@@ -32,6 +32,10 @@ struct RunSettings {
 /// Names of groupers between commas, each once; "all" and "paper" as expand_groupers() takes them. Throws UsageError.
 std::vector<std::string> method_names(const std::string& text);
 
+/// What a terminal is told before a grouper is called so many times: its name, and the time that the plan of a study expects
+/// where that is 10 s or more.
+std::string call_text(const std::string& method, int matches, int repeat);
+
 /// What came of it.
 struct PairRun {
   std::vector<std::string> methods;

@@ -125,19 +125,17 @@ void fill_row(LevelTable& level, std::size_t row, const StudyRecord& record,
 /// The records of a method at a level: of each row its repeats.
 using MethodRecords = std::vector<std::vector<const StudyRecord*>>;
 
-MethodColumns columns_of(const LevelTable& level, const MethodRecords& records, const std::set<std::string>& untried) {
+MethodColumns columns_of(const LevelTable& level, const MethodRecords& records) {
   MethodColumns columns;
   for (const Measure& measure : measures()) {
     if (measure.has(kOfPair)) continue;
     RowNumbers& column = columns.numbers[measure.name];
     column.reserve(level.pairs.size());
-    const bool is_tried = untried.count(measure.name) == 0;
     RowNumbers numbers;
     for (std::size_t row = 0; row < level.pairs.size(); ++row) {
       numbers.clear();
-      if (is_tried)
-        for (const StudyRecord* record : records[row])
-          numbers.push_back(counted_number(measure, *record, level.roles[row]));
+      for (const StudyRecord* record : records[row])
+        numbers.push_back(counted_number(measure, *record, level.roles[row]));
       column.push_back(mean_of(numbers));
     }
   }
@@ -161,33 +159,13 @@ double mean_over(std::size_t count, const Number& number) {
   return seen > 0 ? sum / seen : kAbsent;
 }
 
-double jaccard(const Indices& a, const Indices& b) {
-  Indices both;
-  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
-  const std::size_t either = a.size() + b.size() - both.size();
-  return either > 0 ? static_cast<double>(both.size()) / static_cast<double>(either) : kAbsent;
-}
+/// The tables of a run, and for each the measures of kIfTried that no record has.
+struct Tabulated {
+  std::vector<ExperimentTable> tables;
+  std::vector<std::set<std::string>> untried;
+};
 
-double agreement(const PairSelections& selections, const std::vector<std::string>& methods) {
-  RowNumbers indices;
-  for (auto a = selections.selected.begin(); a != selections.selected.end(); ++a)
-    for (auto b = std::next(a); b != selections.selected.end(); ++b)
-      if (std::count(methods.begin(), methods.end(), a->first) && std::count(methods.begin(), methods.end(), b->first))
-        indices.push_back(jaccard(a->second, b->second));
-  return mean_of(indices);
-}
-
-}  // namespace
-
-int LevelTable::count(PairRole role) const { return static_cast<int>(std::count(roles.begin(), roles.end(), role)); }
-
-const RowNumbers* LevelTable::column(const Measure& measure, const std::string& method) const {
-  if (measure.has(kOfPair)) return &of_pairs.at(measure.name);
-  const auto found = methods.find(method);
-  return found == methods.end() ? nullptr : &found->second.numbers.at(measure.name);
-}
-
-std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
+Tabulated tabulate(const StudyFolder& run) {
   Layout layout = lay_out(run);
   const auto level_of = [&](const Place& place) -> LevelTable& {
     return layout.tables[place.experiment].levels[place.level];
@@ -209,10 +187,85 @@ std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
   for (auto& [key, records] : cells) {
     const auto& [experiment, level_index, method] = key;
     LevelTable& level = layout.tables[experiment].levels[level_index];
-    level.methods[method] = columns_of(level, records, untried[experiment]);
+    level.methods[method] = columns_of(level, records);
     MethodRecords().swap(records);
   }
-  return std::move(layout.tables);
+  return {std::move(layout.tables), std::move(untried)};
+}
+
+/// Measures that an experiment did not take have no numbers, for failed groupers either.
+void leave_out(const std::set<std::string>& untried, ExperimentTable& table) {
+  for (LevelTable& level : table.levels)
+    for (auto& [method, columns] : level.methods)
+      for (const std::string& name : untried) {
+        RowNumbers& column = columns.numbers.at(name);
+        std::fill(column.begin(), column.end(), kAbsent);
+      }
+}
+
+template <class Value>
+void append(std::vector<Value>&& part, std::vector<Value>& whole) {
+  whole.insert(whole.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+}
+
+/// Puts the rows of a level behind those that are there.
+void append(LevelTable&& part, LevelTable& whole) {
+  const std::size_t before = whole.pairs.size(), rows = before + part.pairs.size();
+  append(std::move(part.pairs), whole.pairs);
+  append(std::move(part.scenes), whole.scenes);
+  append(std::move(part.selections), whole.selections);
+  append(std::move(part.roles), whole.roles);
+  append(std::move(part.value), whole.value);
+  for (auto& [name, column] : part.of_pairs) append(std::move(column), whole.of_pairs[name]);
+  for (auto& [method, columns] : part.methods) {
+    MethodColumns& of_whole = whole.methods[method];
+    of_whole.empty += columns.empty;
+    of_whole.failed += columns.failed;
+    for (auto& [name, column] : columns.numbers) {
+      RowNumbers& all = of_whole.numbers[name];
+      all.resize(before, kAbsent);
+      append(std::move(column), all);
+    }
+  }
+  for (auto& [method, columns] : whole.methods)
+    for (auto& [name, column] : columns.numbers) column.resize(rows, kAbsent);  // not in this part
+}
+
+}  // namespace
+
+int LevelTable::count(PairRole role) const { return static_cast<int>(std::count(roles.begin(), roles.end(), role)); }
+
+const RowNumbers* LevelTable::column(const Measure& measure, const std::string& method) const {
+  if (measure.has(kOfPair)) return &of_pairs.at(measure.name);
+  const auto found = methods.find(method);
+  return found == methods.end() ? nullptr : &found->second.numbers.at(measure.name);
+}
+
+std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
+  Tabulated whole = tabulate(run);
+  for (std::size_t i = 0; i < whole.tables.size(); ++i) leave_out(whole.untried[i], whole.tables[i]);
+  return std::move(whole.tables);
+}
+
+TableBuilder::TableBuilder(ExperimentInfo info) {
+  Tabulated empty = tabulate({"", {std::move(info)}, {}, {}});
+  table_ = std::move(empty.tables.front());
+  untried_ = std::move(empty.untried.front());
+}
+
+void TableBuilder::add(std::vector<StudyRecord> records) {
+  Tabulated part = tabulate({"", {table_.info}, {}, std::move(records)});
+  for (std::size_t level = 0; level < table_.levels.size(); ++level)
+    append(std::move(part.tables.front().levels[level]), table_.levels[level]);
+  std::set<std::string> untried;
+  for (const std::string& name : untried_)
+    if (part.untried.front().count(name) > 0) untried.insert(name);
+  untried_ = std::move(untried);
+}
+
+ExperimentTable TableBuilder::table() && {
+  leave_out(untried_, table_);
+  return std::move(table_);
 }
 
 double mean_of(const RowNumbers& column) {
@@ -239,22 +292,5 @@ double quantile_of_present(RowNumbers values, double share) {
 }
 
 double median_of(RowNumbers values) { return quantile_of_present(std::move(values), 0.5); }
-
-std::vector<RowNumbers> selection_agreement(const StudyFolder& run, const ExperimentTable& table,
-                                            const std::vector<std::string>& methods) {
-  std::map<std::string, double> known;
-  std::vector<RowNumbers> agreements;
-  for (const LevelTable& level : table.levels) {
-    RowNumbers& column = agreements.emplace_back();
-    for (const std::string& selection : level.selections) {
-      const std::string file = (std::filesystem::path(run.folder) / selection).string();
-      const auto [entry, is_new] = known.try_emplace(selection, kAbsent);
-      if (is_new && !selection.empty() && std::filesystem::exists(file))
-        entry->second = agreement(read_selections(file), methods);
-      column.push_back(entry->second);
-    }
-  }
-  return agreements;
-}
 
 }  // namespace corral

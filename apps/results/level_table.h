@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,19 @@ struct ExperimentTable {
 /// level) are ignored. Repeats of a grouper on a pair follow one another, from 0, as in records.csv.
 /// Throws    IoError if a record names an experiment or level that the manifest lacks.
 std::vector<ExperimentTable> experiment_tables(const StudyFolder& run);
+
+/// The table of an experiment from its records in parts, which need not be in memory together. All rows of a pair's table (its
+/// groupers and their repeats) are in one part; in any other way the parts give what the whole gives.
+class TableBuilder {
+ public:
+  explicit TableBuilder(ExperimentInfo info);
+  void add(std::vector<StudyRecord> records);
+  ExperimentTable table() &&;
+
+ private:
+  ExperimentTable table_;
+  std::set<std::string> untried_;  ///< measures
+};
 
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.
 double mean_of(const RowNumbers& column);

@@ -2,8 +2,6 @@
 #include "apps/results/losses.h"
 
 #include <algorithm>
-#include <map>
-#include <utility>
 
 #include "apps/results/measures.h"
 #include "io/csv_file.h"
@@ -37,40 +35,6 @@ Cause cause_of_pair(const StudyRecord& oracle) {
                             oracle.keypoints_in_overlap});
 }
 
-/// The rows of all levels and methods, in their order, and where those of a level begin.
-struct Rows {
-  std::vector<LossRow> rows;
-  std::map<std::pair<std::string, std::string>, std::size_t> levels;  // experiment, level
-
-  explicit Rows(const StudyFolder& run) {
-    for (const ExperimentInfo& info : run.experiments) {
-      std::vector<std::string> methods = info.methods;
-      methods.insert(methods.end(), {"oracle", "baseline"});
-      for (const StudyLevel& level : info.levels) {
-        levels[{info.name, level.label}] = rows.size();
-        for (const std::string& method : methods) rows.push_back({info.name, info.dataset, level.label, method});
-      }
-    }
-  }
-
-  void add_pair(Records first, Records last) {
-    const auto oracle = std::find_if(first, last, [](const StudyRecord& record) { return record.method == "oracle"; });
-    const auto level = levels.find({first->experiment, first->level});
-    if (oracle == last || level == levels.end()) return;  // without a truth, or at no level
-    const Cause pair = cause_of_pair(*oracle);
-    for (auto record = first; record != last; ++record) {
-      if (record->status.state == MethodState::NotApplicable) continue;
-      const auto is_same = [&](const auto& other) { return record->method == other.method; };
-      const auto row = std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(level->second), rows.end(), is_same);
-      if (row == rows.end() || row->experiment != first->experiment || row->level != first->level.str()) continue;
-      row->pairs += record->repeat == 0;
-      const Cause cause = pair == Cause::TruthDoesNotFit ? pair : cause_of(end_of(*record), pair);
-      row->ended[static_cast<std::size_t>(stage_of(cause))] +=
-          1.0 / static_cast<double>(std::count_if(first, last, is_same));
-    }
-  }
-};
-
 }  // namespace
 
 const char* to_text(Stage stage) { return kNames[static_cast<std::size_t>(stage)]; }
@@ -100,14 +64,46 @@ Stage stage_of(Cause cause) {
   return Stage::Failed;
 }
 
-std::vector<LossRow> losses_of(const StudyFolder& run) {
-  Rows losses(run);
-  for (Records first = run.records.begin(); first != run.records.end();) {
-    const Records last = end_of_pair(first, run.records.end());
-    losses.add_pair(first, last);
+LossCounter::LossCounter(const std::vector<ExperimentInfo>& experiments) {
+  for (const ExperimentInfo& info : experiments) {
+    std::vector<std::string> methods = info.methods;
+    methods.insert(methods.end(), {"oracle", "baseline"});
+    for (const StudyLevel& level : info.levels) {
+      levels_[{info.name, level.label}] = rows_.size();
+      for (const std::string& method : methods) rows_.push_back({info.name, info.dataset, level.label, method});
+    }
+  }
+}
+
+void LossCounter::add(const std::vector<StudyRecord>& records) {
+  for (Records first = records.begin(); first != records.end();) {
+    const Records last = end_of_pair(first, records.end());
+    add_pair(first, last);
     first = last;
   }
-  return std::move(losses.rows);
+}
+
+void LossCounter::add_pair(Records first, Records last) {
+  const auto oracle = std::find_if(first, last, [](const StudyRecord& record) { return record.method == "oracle"; });
+  const auto level = levels_.find({first->experiment, first->level});
+  if (oracle == last || level == levels_.end()) return;  // without a truth, or at no level
+  const Cause pair = cause_of_pair(*oracle);
+  for (auto record = first; record != last; ++record) {
+    if (record->status.state == MethodState::NotApplicable) continue;
+    const auto is_same = [&](const auto& other) { return record->method == other.method; };
+    const auto row = std::find_if(rows_.begin() + static_cast<std::ptrdiff_t>(level->second), rows_.end(), is_same);
+    if (row == rows_.end() || row->experiment != first->experiment || row->level != first->level.str()) continue;
+    row->pairs += record->repeat == 0;
+    const Cause cause = pair == Cause::TruthDoesNotFit ? pair : cause_of(end_of(*record), pair);
+    row->ended[static_cast<std::size_t>(stage_of(cause))] +=
+        1.0 / static_cast<double>(std::count_if(first, last, is_same));
+  }
+}
+
+std::vector<LossRow> losses_of(const StudyFolder& run) {
+  LossCounter losses(run.experiments);
+  losses.add(run.records);
+  return losses.rows();
 }
 
 std::vector<LossRow> over_levels(const std::vector<LossRow>& rows) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/pair/explain.h"
@@ -43,6 +45,21 @@ struct LossRow {
 /// Departs   Normals on opposite sides are no number of a record: such a pair is lost at its keypoints or matches. A pair whose
 ///           truth does not fit is lost whatever its poses. Without a number of keypoints (tables of matches) none is lost there.
 std::vector<LossRow> losses_of(const StudyFolder& run);
+
+/// The same of records that come in parts: the records of a pair at a level are in one.
+class LossCounter {
+ public:
+  explicit LossCounter(const std::vector<ExperimentInfo>& experiments);
+  void add(const std::vector<StudyRecord>& records);
+  std::vector<LossRow> rows() const { return rows_; }
+
+ private:
+  using Records = std::vector<StudyRecord>::const_iterator;
+  void add_pair(Records first, Records last);
+
+  std::vector<LossRow> rows_;
+  std::map<std::pair<std::string, std::string>, std::size_t> levels_;  ///< experiment, level: where its rows begin
+};
 
 /// The same over all levels of an experiment.
 std::vector<LossRow> over_levels(const std::vector<LossRow>& rows);

@@ -8,16 +8,26 @@
 namespace corral {
 namespace {
 
+constexpr std::size_t kSamplesAtOnce = 1000;
+
+/// A sample with the level that it turned out to be at.
+struct PlacedSample {
+  const StudySample* sample;
+  std::optional<double> value;
+  int level;
+};
+
 /// What all rows of a sample have in common.
-StudyRecord common_part(const WorkList& list, const StudySample& sample, const UnitResult& result) {
+StudyRecord common_part(const WorkList& list, const PlacedSample& placed, const UnitResult& result) {
+  const StudySample& sample = *placed.sample;
   const ExperimentInfo& info = list.experiments[static_cast<std::size_t>(sample.experiment)].info;
   StudyRecord record;
   record.experiment = info.name;
   record.dataset = info.dataset;
-  record.level = sample.level < 0 ? std::string() : info.levels[static_cast<std::size_t>(sample.level)].label;
+  record.level = placed.level < 0 ? std::string() : info.levels[static_cast<std::size_t>(placed.level)].label;
   record.pair = list.units[static_cast<std::size_t>(sample.unit)].pair.name;
   record.scene = list.units[static_cast<std::size_t>(sample.unit)].scene;
-  record.value = sample.value;
+  record.value = placed.value;
   if (result.failure.empty()) record.matches = result.matches;
   if (result.failure.empty() && list.units[static_cast<std::size_t>(sample.unit)].is_in_metres)
     record.metres_per_pr = result.resolution;
@@ -58,11 +68,12 @@ StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t thres
   return record;
 }
 
-void add_rows(const WorkList& list, const StudySample& sample, const UnitResult& result,
+void add_rows(const WorkList& list, const PlacedSample& placed, const UnitResult& result,
               std::vector<StudyRecord>& records) {
+  const StudySample& sample = *placed.sample;
   const WorkUnit& unit = list.units[static_cast<std::size_t>(sample.unit)];
   const std::size_t threshold = threshold_of(list, sample);
-  StudyRecord common = common_part(list, sample, result);
+  StudyRecord common = common_part(list, placed, result);
   if (!result.failure.empty()) common.status = {MethodState::Failed, result.failure};
   if (result.has_truth) {
     common.truth = result.truth;
@@ -92,33 +103,45 @@ void add_rows(const WorkList& list, const StudySample& sample, const UnitResult&
   }
 }
 
+/// The samples of an experiment that are at a level or failed, by level and unit.
+std::vector<PlacedSample> placed_samples(const WorkList& list, const std::vector<UnitResult>& results, int experiment) {
+  const Experiment& of = list.experiments[static_cast<std::size_t>(experiment)];
+  std::vector<PlacedSample> placed;
+  for (const StudySample& sample : list.samples) {
+    if (sample.experiment != experiment) continue;
+    PlacedSample place{&sample, sample.value, sample.level};
+    const UnitResult& result = results[static_cast<std::size_t>(sample.unit)];
+    if (is_measured(of.sweep) && result.failure.empty()) {
+      place.value = measured_value(list, sample, result);
+      place.level = place.value ? level_of(of.info.levels, *place.value) : -1;
+      if (place.level < 0) continue;
+    }
+    placed.push_back(place);
+  }
+  std::stable_sort(placed.begin(), placed.end(),
+                   [](const PlacedSample& a, const PlacedSample& b) { return a.level < b.level; });
+  return placed;
+}
+
 }  // namespace
 
-std::vector<StudyRecord> assemble_records(const WorkList& list, const std::vector<UnitResult>& results) {
-  std::vector<StudySample> samples;
-  for (StudySample sample : list.samples) {
-    const Experiment& experiment = list.experiments[static_cast<std::size_t>(sample.experiment)];
-    const UnitResult& result = results[static_cast<std::size_t>(sample.unit)];
-    if (is_measured(experiment.sweep) && result.failure.empty()) {
-      sample.value = measured_value(list, sample, result);
-      sample.level = sample.value ? level_of(experiment.info.levels, *sample.value) : -1;
-      if (sample.level < 0) continue;
-    }
-    samples.push_back(std::move(sample));
+void assemble_records(const WorkList& list, const std::vector<UnitResult>& results, int experiment,
+                      const std::function<void(std::vector<StudyRecord>)>& consume) {
+  const std::vector<PlacedSample> placed = placed_samples(list, results, experiment);
+  for (std::size_t begin = 0; begin < placed.size(); begin += kSamplesAtOnce) {
+    std::vector<StudyRecord> records;
+    for (std::size_t i = begin; i < std::min(begin + kSamplesAtOnce, placed.size()); ++i)
+      add_rows(list, placed[i], results[static_cast<std::size_t>(placed[i].sample->unit)], records);
+    consume(std::move(records));
   }
-  std::stable_sort(samples.begin(), samples.end(), [](const StudySample& a, const StudySample& b) {
-    return std::tie(a.experiment, a.level) < std::tie(b.experiment, b.level);
-  });
-  std::vector<StudyRecord> records;
-  for (const StudySample& sample : samples)
-    add_rows(list, sample, results[static_cast<std::size_t>(sample.unit)], records);
-  return records;
 }
 
 std::string records_text(const std::vector<StudyRecord>& records) {
-  std::string text = csv_line(record_columns());
+  std::string text;
   for (const StudyRecord& record : records) text += record_line(record);
   return text;
 }
+
+std::string records_header() { return csv_line(record_columns()); }
 
 }  // namespace corral

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "apps/results/study_record.h"
@@ -9,11 +11,14 @@
 
 namespace corral {
 
-/// The rows of records.csv from the results of all units: by experiment, level, unit, grouper and repeat, oracle and baseline
-/// last. A pair that failed has a row for each of them with its cause. Tables whose size is at no level are left out.
-std::vector<StudyRecord> assemble_records(const WorkList& list, const std::vector<UnitResult>& results);
+/// The rows of records.csv of one experiment from the results of all units, in parts of whole pairs, since those of a large study
+/// take more memory than it should need: by level, unit, grouper and repeat, oracle and baseline last. A pair that failed has a
+/// row for each of them with its cause. Tables whose size is at no level are left out.
+void assemble_records(const WorkList& list, const std::vector<UnitResult>& results, int experiment,
+                      const std::function<void(std::vector<StudyRecord>)>& consume);
 
-/// As the file records.csv.
+/// The lines of records in the file records.csv, and of its header.
 std::string records_text(const std::vector<StudyRecord>& records);
+std::string records_header();
 
 }  // namespace corral

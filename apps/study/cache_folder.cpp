@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/file.h"
+#include "io/staged_files.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -108,16 +108,36 @@ std::optional<Value> read_whole(const std::optional<std::string>& bytes, const R
   return std::nullopt;
 }
 
-}  // namespace
-
-std::string content_hash(const std::string& content) {
-  const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
+std::string digits_of(const XXH128_hash_t& hash) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;
   for (const std::uint64_t half : {hash.high64, hash.low64})
     for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(half >> shift) & 15];
   return text;
 }
+
+}  // namespace
+
+std::string content_hash(const std::string& content) {
+  return digits_of(XXH3_128bits(content.data(), content.size()));
+}
+
+struct ContentHasher::State {
+  XXH3_state_t* state = XXH3_createState();
+  State() {
+    if (!state || XXH3_128bits_reset(state) != XXH_OK) throw std::bad_alloc();
+  }
+  ~State() { XXH3_freeState(state); }
+};
+
+ContentHasher::ContentHasher() : state_(std::make_unique<State>()) {}
+ContentHasher::~ContentHasher() = default;
+
+void ContentHasher::add(const std::string& piece) {
+  XXH3_128bits_update(state_->state, piece.data(), piece.size());
+}
+
+std::string ContentHasher::hash() const { return digits_of(XXH3_128bits_digest(state_->state)); }
 
 ContentStore::ContentStore(std::string folder, std::uint64_t limit_bytes) : folder_(std::move(folder), limit_bytes) {}
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,22 @@ namespace corral {
 
 /// 32 hexadecimal digits: a 128-bit hash of the content, not cryptographic.
 std::string content_hash(const std::string& content);
+
+/// The same of a content that comes in pieces.
+class ContentHasher {
+ public:
+  ContentHasher();
+  ~ContentHasher();
+  ContentHasher(const ContentHasher&) = delete;
+  ContentHasher& operator=(const ContentHasher&) = delete;
+
+  void add(const std::string& piece);
+  std::string hash() const;  ///< of all pieces so far
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// The matches of a pair, and the number of keypoints on either side.
 struct StoredMatches {

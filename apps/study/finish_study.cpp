@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <numeric>
 #include <set>
 
@@ -10,9 +11,15 @@
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
 #include "io/file.h"
+#include "io/staged_files.h"
 
 namespace corral {
 namespace {
+
+template <class Row>
+void append(std::vector<Row> rows, std::vector<Row>& all) {
+  std::move(rows.begin(), rows.end(), std::back_inserter(all));
+}
 
 /// What is wrong with the data of the pairs, each pair once, in the order of the units.
 void add_warnings(const WorkList& list, const std::vector<std::size_t>& units, const std::vector<UnitResult>& results,
@@ -28,6 +35,24 @@ void add_warnings(const WorkList& list, const std::vector<std::size_t>& units, c
     if (!verdict.empty() && !TruthFit::is_belonging(verdict))
       add(pair.truth + ": " + results[unit].truth_text, outcome.misfits);
     for (const std::string& warning : results[unit].warnings) add(warning, outcome.warnings);
+  }
+}
+
+/// Writes the records, and averages and counts them, one experiment after the other.
+void write_records(const WorkList& list, const std::vector<UnitResult>& results, StagedFiles& files,
+                   StudyOutcome& outcome) {
+  files.write(records_header());
+  for (std::size_t experiment = 0; experiment < list.experiments.size(); ++experiment) {
+    const ExperimentInfo& info = list.experiments[experiment].info;
+    TableBuilder table(info);
+    LossCounter losses({info});
+    assemble_records(list, results, static_cast<int>(experiment), [&](std::vector<StudyRecord> records) {
+      files.write(records_text(records));
+      losses.add(records);
+      table.add(std::move(records));
+    });
+    append(summarize({std::move(table).table()}), outcome.summary);
+    append(losses.rows(), outcome.losses);
   }
 }
 
@@ -48,23 +73,22 @@ StudyOutcome outcome_of(const WorkList& list, const FinishedUnits& finished, con
   return outcome;
 }
 
-StudyOutcome finish_study(const WorkList& list, FinishedUnits& finished, const std::string& folder,
+StudyOutcome finish_study(const WorkList& list, const FinishedUnits& finished, const std::string& folder,
                           const std::string& command_line) {
   std::vector<std::size_t> all(list.units.size());
   std::iota(all.begin(), all.end(), 0);
   StudyOutcome outcome = outcome_of(list, finished, all);
-  StudyFolder run{folder, {}, {}, assemble_records(list, finished.results())};
-  for (const Experiment& experiment : list.experiments) run.experiments.push_back(experiment.info);
-  const std::string manifest =
-      manifest_text(list, finished.inputs(), {finished.results(), finished.machines(), command_line});
-  finished.release_results();  // a large study needs the room
-  outcome.summary = summarize(experiment_tables(run));
-  outcome.losses = losses_of(run);
-  const std::filesystem::path place(folder);
-  write_files({{(place / "records.csv").string(), records_text(run.records)},
-               {(place / "summary.csv").string(), summary_text(outcome.summary)},
-               {(place / "manifest.json").string(), manifest}});
-  remove_leftovers((place / "selections").string());  // of calls that were killed
+  const auto place = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+  for (const char* name : {"records.csv", "summary.csv", "manifest.json"}) remove_leftovers_of(place(name));
+  StagedFiles files;
+  files.begin(place("records.csv"));
+  write_records(list, finished.results(), files, outcome);
+  files.begin(place("summary.csv"));
+  files.write(summary_text(outcome.summary));
+  files.begin(place("manifest.json"));
+  files.write(manifest_text(list, finished.inputs(), {finished.results(), finished.machines(), command_line}));
+  files.commit();
+  remove_leftovers(place("selections"));  // of calls that were killed
   return outcome;
 }
 

@@ -35,7 +35,6 @@ class FinishedUnits {
   const std::vector<UnitResult>& results() const {
     return results_;
   }  ///< one for each unit, empty unless it is finished
-  void release_results() { std::vector<UnitResult>().swap(results_); }
   const InputHashes& inputs() const { return inputs_; }                ///< of all files that are known
   const std::vector<double>& seconds() const { return seconds_; }      ///< that each unit took
   const std::set<std::string>& machines() const { return machines_; }  ///< MachineInfo of the journals, as JSON

@@ -168,9 +168,10 @@ InputHashes hash_answers(const WorkList& list) {
 
 StudyIdentity identity_of(const WorkList& list) {
   const BuildInfo build = build_info();
-  std::string text = compact_json(experiments_json(list));
-  for (const WorkUnit& unit : list.units) text += "\n" + unit_text(unit);
-  return {build.version, build.commit, content_hash(text)};
+  ContentHasher hasher;  // a large study has a long text
+  hasher.add(compact_json(experiments_json(list)));
+  for (const WorkUnit& unit : list.units) hasher.add("\n" + unit_text(unit));
+  return {build.version, build.commit, hasher.hash()};
 }
 
 Json machine_json() {

@@ -42,7 +42,7 @@ class Estimator {
         is_table ? std::min(bytes_of(unit.pair.matches) / 100, kMostRows) : keypoints_of(unit, source);
     const std::uint64_t described = is_table ? 0 : keypoints_of(unit, target);
     std::uint64_t nanoseconds = 6'000'000 + 1'800 * vertices + 24 * rows * described;
-    nanoseconds += calls * (600 * rows + 5 * rows * rows / 2);
+    for (const GroupingTask& task : unit.tasks) nanoseconds += call_nanoseconds(task.method, rows);
     if (unit.dense) nanoseconds += calls * 6'000 * vertices;
     std::uint64_t memory = 0;
     for (const GroupingTask& task : unit.tasks) memory = std::max(memory, memory_of(task, static_cast<int>(rows)));
@@ -72,6 +72,11 @@ class Estimator {
 };
 
 }  // namespace
+
+std::uint64_t call_nanoseconds(const std::string& method, std::uint64_t matches) {
+  const std::uint64_t tenths = method == "st" ? 120 : method == "si" ? 13 : 1;
+  return 1'100 * matches + tenths * matches * matches / 10;
+}
 
 std::vector<UnitEstimate> estimate_units(const WorkList& list) {
   Estimator estimate;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "apps/study/work_list.h"
@@ -12,7 +13,7 @@ namespace corral {
 ///
 ///   V = bytes / 40 of the source, W of the target     M = V / (6 r^2) matches, r = the detector's length in pr; of a table,
 ///   bytes / 100
-///   time = a + b (V + W) + c M W + per call of a grouper (d M + e M^2) + dense f (V + W)
+///   time = a + b (V + W) + c M W + call_nanoseconds(grouper, M) of each call of a grouper + dense f (V + W)
 ///
 /// Whole numbers throughout, so that every machine finds the same. The constants were scaled to the recorded times of one study
 /// (paper/README.md): the split needs their proportions only, `corral plan --like` adapts the times to a machine.
@@ -22,6 +23,10 @@ struct UnitEstimate {
 
   double seconds() const { return static_cast<double>(microseconds) / 1e6; }
 };
+/// What a call of a grouper is expected to take on a table of M matches, with the refinement and the scores behind it: d M + e M^2
+/// with an e for each grouper, which is that of ST on real tables of 100,000 matches (grouping/README.md) and that of SI there.
+std::uint64_t call_nanoseconds(const std::string& method, std::uint64_t matches);
+
 /// The estimates of all units. A file that is not there has the size 0; its pair fails soon.
 std::vector<UnitEstimate> estimate_units(const WorkList& list);
 

@@ -25,6 +25,19 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
          "#SBATCH --requeue\n#SBATCH --ntasks=1\n";
 }
 
+/// What follows the start of a shard. Slurm itself requeues what is lost with a node, but not what a signal ended. A wait that
+/// a signal interrupts returns before the shard has ended. The state is no longer RUNNING where a user cancels the job.
+constexpr char kWatch[] =
+    "shard=$!\n"
+    "trap 'kill -TERM \"$shard\"' TERM\n"
+    "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
+    "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 5 ] &&\n"
+    "  [ \"$(squeue -h -j \"$SLURM_JOB_ID\" -o %T)\" = RUNNING ]; then\n"
+    "  echo \"ended with status $status: back into the queue\"\n"
+    "  scontrol requeue \"$SLURM_JOB_ID\"\n"
+    "fi\n"
+    "exit \"$status\"\n";
+
 }  // namespace
 
 std::string shell_word(const std::string& text) {
@@ -50,12 +63,12 @@ std::string memory_limit(const std::vector<ShardPlan>& plan, int processors) {
 
 std::string shards_script(const SlurmJobs& jobs) {
   const std::string count = std::to_string(jobs.shards);
-  // B: the signal goes to the process of the script, which is the program itself.
+  // B: the signal goes to the process of the script, which passes it on.
   return head(jobs, "corral", "shard-%a.log") +
          option("array", "1-" + count + (jobs.at_once > 0 ? "%" + std::to_string(jobs.at_once) : "")) +
          option("cpus-per-task", std::to_string(jobs.processors)) + option("time", jobs.time) +
-         option("mem", jobs.memory) + option("signal", "B:TERM@60") + "exec " + shell_words(jobs.evaluate) +
-         " --shard \"$SLURM_ARRAY_TASK_ID/" + count + "\"\n";
+         option("mem", jobs.memory) + option("signal", "B:TERM@60") + shell_words(jobs.evaluate) +
+         " --shard \"$SLURM_ARRAY_TASK_ID/" + count + "\" &\n" + kWatch;
 }
 
 std::string merge_script(const SlurmJobs& jobs) {

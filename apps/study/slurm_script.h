@@ -25,8 +25,9 @@ struct SlurmJobs {
 std::string time_limit(const std::vector<ShardPlan>& plan, int processors);
 std::string memory_limit(const std::vector<ShardPlan>& plan, int processors);
 
-/// The batch script of the array, whose element i is shard i: shards.sbatch. The program takes the place of the shell, so that
-/// it gets the signal of Slurm; an element that Slurm puts back into the queue continues where it ended.
+/// The batch script of the array, whose element i is shard i: shards.sbatch. It passes the signal of Slurm on to the program,
+/// and an element that a signal ended (its limit of time, lack of memory) puts itself back into the queue, until it has been
+/// started five times more; Slurm does that for one that is lost with its node. Each continues where it ended.
 std::string shards_script(const SlurmJobs& jobs);
 
 /// The batch script of the merge: merge.sbatch.

@@ -134,7 +134,7 @@ std::vector<TimeRow> run_time_study(const WorkList& list, const StudySettings& s
                   "its detector");
   const std::vector<TimeRow> rows = time_rows(experiment.info, records);
   const std::vector<UnitResult> results(list.units.size());  // finished; nothing was judged
-  write_files({{(folder / "records.csv").string(), records_text(records)},
+  write_files({{(folder / "records.csv").string(), records_header() + records_text(records)},
                {(folder / "time.csv").string(), time_text(rows)},
                {(folder / "manifest.json").string(),
                 manifest_text(list, inputs, {results, {compact_json(machine_json())}, settings.command_line})}});

@@ -21,6 +21,7 @@ int count_of(const Json& json) {
 
 std::vector<int> counts_of(const Json& json) {
   std::vector<int> counts;
+  counts.reserve(json.size());
   for (const Json& count : json) counts.push_back(count_of(count));
   return counts;
 }
@@ -86,6 +87,7 @@ UnitResult unit_result_of(const Json& json) {
   result.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.true_matches = counts_of(json.at("true_matches"));
   for (const Json& share : json.at("frame_share")) result.frame_share.push_back(number_of(share));
+  result.tasks.reserve(json.at("tasks").size());
   for (const Json& task : json.at("tasks")) result.tasks.push_back(task_of(task));
   for (const Json& oracle : json.at("oracles")) result.oracles.push_back(task_of(oracle));
   if (!json.at("baseline").is_null()) result.baseline = task_of(json.at("baseline"));

@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "apps/results/summary.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "tests/io/scratch.h"
@@ -208,6 +210,38 @@ TEST(LevelTable, ComparesSelections) {
   const auto agreements = selection_agreement(run, experiment_tables(run).at(0), {"ss", "gc", "si"});
   // ss and gc share 1 of 3 rows, si shares none with either
   EXPECT_THAT(agreements.at(0), ElementsAre(DoubleEq((1.0 / 3 + 0 + 0) / 3), IsNan()));
+}
+
+// Whole pairs in parts of any size: the tables of the whole, with the measures that no part has left out.
+TEST(TableBuilder, PartsGiveWhatTheWholeGives) {
+  StudyFolder run = testing::simulated_study(1, 4);
+  run.records.front().dense.mean_error_pr = 1;  // tried, in one part
+  const std::vector<ExperimentTable> whole = experiment_tables(run);
+  ASSERT_FALSE(whole.empty());
+  for (std::size_t experiment = 0; experiment < whole.size(); ++experiment)
+    for (const std::size_t least : {1u, 40u}) {
+      TableBuilder builder(run.experiments[experiment]);
+      std::vector<StudyRecord> part;
+      const auto is_of_it = [&](const StudyRecord& record) {
+        return record.experiment == run.experiments[experiment].name;
+      };
+      for (const StudyRecord& record : run.records) {
+        if (!is_of_it(record)) continue;
+        if (part.size() >= least && !(part.back().pair == record.pair && part.back().level == record.level))
+          builder.add(std::exchange(part, {}));
+        part.push_back(record);
+      }
+      builder.add(std::move(part));
+      const ExperimentTable table = std::move(builder).table();
+      EXPECT_EQ(summary_text(summarize({table})), summary_text(summarize({whole[experiment]})));
+      for (std::size_t level = 0; level < table.levels.size(); ++level) {
+        EXPECT_EQ(table.levels[level].pairs, whole[experiment].levels[level].pairs);
+        EXPECT_EQ(table.levels[level].scenes, whole[experiment].levels[level].scenes);
+        EXPECT_EQ(table.levels[level].selections, whole[experiment].levels[level].selections);
+        EXPECT_EQ(table.levels[level].roles, whole[experiment].levels[level].roles);
+        EXPECT_EQ(table.levels[level].methods.size(), whole[experiment].levels[level].methods.size());
+      }
+    }
 }
 
 }  // namespace

@@ -70,7 +70,16 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
             "#SBATCH --time=90\n"
             "#SBATCH --mem=2G\n"
             "#SBATCH --signal=B:TERM@60\n"
-            "exec /bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\"\n");
+            "/bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\" &\n"
+            "shard=$!\n"
+            "trap 'kill -TERM \"$shard\"' TERM\n"
+            "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
+            "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 5 ] &&\n"
+            "  [ \"$(squeue -h -j \"$SLURM_JOB_ID\" -o %T)\" = RUNNING ]; then\n"
+            "  echo \"ended with status $status: back into the queue\"\n"
+            "  scontrol requeue \"$SLURM_JOB_ID\"\n"
+            "fi\n"
+            "exit \"$status\"\n");
   jobs.at_once = 20;
   jobs.processors = 4;
   jobs.partition = "short";
@@ -79,6 +88,49 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
                                          HasSubstr("--partition=short\n"), HasSubstr("--account=physics\n")));
   EXPECT_THAT(merge_script(jobs), AllOf(HasSubstr("--partition=short\n"), HasSubstr("--account=physics\n"),
                                         HasSubstr("exec /bin/corral merge /s\n"), Not(HasSubstr("array"))));
+}
+
+/// What a shard's script does whose program is a line of the shell, where Slurm's own programs say what they were asked.
+struct ScriptRun {
+  int status;
+  std::string log;
+};
+ScriptRun run_shard(const std::string& program, const std::string& variables, const std::string& state = "RUNNING") {
+  const ScratchFolder folder;
+  for (const auto& [tool, prints] : {std::pair("squeue", state), std::pair("scontrol", std::string("$*"))}) {
+    const std::string path = put_text(folder / tool, "#!/bin/sh\necho \"" + prints + "\"\n");
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  }
+  SlurmJobs jobs;
+  jobs.evaluate = {"sh", "-c", program};
+  put_text(folder / "script", shards_script(jobs));
+  const int ended = std::system(("cd '" + folder.path() + "' && PATH=\"$PWD:$PATH\" SLURM_JOB_ID=17 " + variables +
+                                 " sh script > log 2>&1")
+                                    .c_str());
+  return {WEXITSTATUS(ended), testing::text_of(folder / "log")};
+}
+
+TEST(SlurmScript, AShardThatASignalEndedGoesBackIntoTheQueue) {
+  const std::string back = "requeue 17\n";
+  const ScriptRun killed = run_shard("kill -KILL $$", "");
+  EXPECT_EQ(killed.status, 128 + 9);
+  EXPECT_THAT(killed.log, HasSubstr("status 137: back into the queue\n" + back));
+  EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=4").log, HasSubstr(back));
+  EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=5").log, Not(HasSubstr(back))) << "not for ever";
+  EXPECT_THAT(run_shard("kill -KILL $$", "", "COMPLETING").log, Not(HasSubstr(back))) << "a user has cancelled it";
+  for (const int status : {0, 3, 4}) {
+    const ScriptRun ended = run_shard("exit " + std::to_string(status), "");
+    EXPECT_EQ(ended.status, status);
+    EXPECT_EQ(ended.log, "");
+  }
+}
+
+TEST(SlurmScript, ASignalOfSlurmReachesTheProgramWhichEndsInOrder) {
+  // The program sends the signal to the script, as Slurm does, and takes its time to end.
+  const ScriptRun ended =
+      run_shard("trap 'sleep 0.3; echo in order; exit 143' TERM; kill -TERM $PPID; while :; do sleep 0.05; done", "");
+  EXPECT_EQ(ended.status, 143);
+  EXPECT_THAT(ended.log, HasSubstr("in order\nended with status 143: back into the queue\nrequeue 17\n"));
 }
 
 TEST(SlurmScript, SubmitsFromTheFolderOfTheScriptsAndMergesBehindTheArray) {
