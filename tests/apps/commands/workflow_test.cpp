@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// apps/workflow and tests/slurm, each where its engine is installed: the study is that of one run.
+// apps/workflow, tests/slurm and tests/ssh, each where its engine is installed: the study is that of one run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,6 +30,13 @@ class Workflow : public ::testing::Test {
     ASSERT_EQ(place_.corral("evaluate 'a test.toml' --data data -o whole").status, 0);
     EXPECT_EQ(lasting_files(place_, study), lasting_files(place_, "whole"));
   }
+  /// Runs a script of tests/ that kills shards of a study while they work, so of one that takes longer.
+  int disturb(const std::string& script) const {
+    std::string longer = kSmallExperiment;
+    longer.replace(longer.find("repeats = 2"), 11, "repeats = 999");
+    place_.put("long.toml", longer);
+    return run(script + " " CORRAL_PROGRAM " data long.toml");
+  }
   const Workplace place_;
 };
 
@@ -54,11 +61,14 @@ TEST_F(Workflow, Snakemake) {
   EXPECT_THAT(place_.text("log"), ::testing::HasSubstr("Nothing to be done"));
 }
 
+TEST_F(Workflow, Ssh) {
+  const int status = disturb(kSource + "/tests/ssh");
+  if (status == 77) GTEST_SKIP() << place_.text("log");
+  EXPECT_EQ(status, 0) << place_.text("log");
+}
+
 TEST_F(Workflow, Slurm) {
-  std::string longer = kSmallExperiment;  // so that a shard can be killed while it works
-  longer.replace(longer.find("repeats = 2"), 11, "repeats = 999");
-  place_.put("long.toml", longer);
-  const int status = run("SHARDS=3 " + kSource + "/tests/slurm " CORRAL_PROGRAM " data long.toml");
+  const int status = disturb("SHARDS=3 " + kSource + "/tests/slurm");
   if (status == 77) GTEST_SKIP() << place_.text("log");
   EXPECT_EQ(status, 0) << place_.text("log");
 }
