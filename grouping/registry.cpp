@@ -11,6 +11,7 @@
 #include "grouping/similarity_score.h"
 #include "grouping/spectral.h"
 #include "grouping/tcf.h"
+#include "grouping/turboreg.h"
 
 namespace corral {
 namespace {
@@ -45,10 +46,12 @@ const std::vector<Grouper>& groupers() {
             group_by_hough_voting),
       entry("si", "Search of inliers (SI)", "votes of near and of distinctive matches", "buch2014search",
             group_by_search_of_inliers),
+      entry("turboreg", "TurboReg", "best pose of triangles on edges with many common neighbours", "yan2025turboreg",
+            group_by_turboreg),
       entry("tcf", "Two-stage consensus filtering (TCF)", "consensus on one match, two, three, then a robust fit",
             "shi2024tcf", group_by_tcf),
-      entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners", "rodola2013scale",
-            group_by_game_theory),
+      entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners",
+            "rodola2013scale", group_by_game_theory),
       entry("cv", "Consistency voting (CV)", "lengths and frames agree with a few distinctive matches",
             "yang2021performance", group_by_consistency_voting),
   };

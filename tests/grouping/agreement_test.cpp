@@ -9,6 +9,7 @@
 
 #include "grouping/ransac.h"
 #include "tests/support/reference_groupers.h"
+#include "tests/support/reference_turboreg.h"
 #include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 
@@ -221,6 +222,18 @@ TEST(Agreement, RansacFindsAsManyInliers) {
     // Both are averages of a random count; the best of 10000 triples scatters by a few percent.
     EXPECT_GT(found, 0.95 * expected - 1);
     EXPECT_LT(found, 1.05 * expected + 1);
+  }
+}
+
+TEST(Agreement, Turboreg) {
+  TurboregOptions options;
+  expect_identical(group_by_turboreg, reference::turboreg, options, tables({60, 250}, 3));
+  expect_identical(group_by_turboreg, reference::turboreg, options, tables({500}, 1));
+  options.score = PoseScore::Msac;
+  options.refit_rounds = 0;
+  for (const int pivots : {1, 10, 100}) {
+    options.pivots = pivots;
+    expect_identical(group_by_turboreg, reference::turboreg, options, tables({50, 120, 300}, 2));
   }
 }
 

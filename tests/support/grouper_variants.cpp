@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tests/support/reference_turboreg.h"
+
 namespace corral::testing {
 namespace {
 
@@ -56,6 +58,13 @@ Promises of_voters(bool knows_origin = false) {
   return promises;
 }
 
+/// Source and target are not alike.
+Promises of_one_side() {
+  Promises promises;
+  promises.symmetric = false;
+  return promises;
+}
+
 std::vector<GrouperVariant> make_variants() {
   const Method ss(group_by_similarity_score, reference::similarity_score);
   const Method nnsr(group_by_nearest_neighbor_ratio, reference::nearest_neighbor_ratio);
@@ -64,6 +73,7 @@ std::vector<GrouperVariant> make_variants() {
   const Method gc(group_by_geometric_consistency, reference::geometric_consistency);
   const Method hough(group_by_hough_voting, reference::hough_voting);
   const Method si(group_by_search_of_inliers, reference::search_of_inliers);
+  const Method turboreg(group_by_turboreg, reference::turboreg);
   const Promises unlike = promising(Copies::Unlike), both = promising(Copies::Both), first = promising(Copies::First);
   return {
       ss("ss", both),
@@ -90,6 +100,10 @@ std::vector<GrouperVariant> make_variants() {
       si("si_covis_few_voters", of_voters(), {{"form", "covis"}, {"voters", "6"}}),
       si("si_rotation", of_voters(true), {{"form", "rotation"}}),
       si("si_bins100", of_voters(), {{"otsu", "bins100"}}),
+      turboreg("turboreg", unlike),
+      turboreg("turboreg_raw", unlike, {{"refit_rounds", "0"}, {"edge_pr", "0.5"}, {"score", "mse"}}),
+      turboreg("turboreg_few_pivots", unlike, {{"pivots", "3"}, {"min_length_pr", "0"}, {"score", "mae"}}),
+      turboreg("turboreg_oamae", of_one_side(), {{"score", "oamae"}}),  // for each point of the target
   };
 }
 

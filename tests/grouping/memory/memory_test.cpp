@@ -80,13 +80,15 @@ INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
                                            Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
                                            Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
                                            Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
-                                           Case{"si", {{"form", "covis"}}}, Case{"tcf", {}}, Case{"gtm", {}},
-                                           Case{"cv", {}}));
+                                           Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
+                                           Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"tcf", {}},
+                                           Case{"gtm", {}}, Case{"cv", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
   const ConfiguredGrouper grouper = find_grouper(GetParam().method).configure(GetParam().options);
-  const bool is_quadratic = std::string(GetParam().method) == "st" || std::string(GetParam().method) == "gtm" ||
-                            GetParam().options.count("cluster") > 0;
+  const std::string method = GetParam().method;
+  const bool is_quadratic =
+      method == "st" || method == "turboreg" || method == "gtm" || GetParam().options.count("cluster") > 0;
   for (const int rows : {0, 1, 10, 100, 700, is_quadratic ? 1500 : 8000})
     for (const double inlier_ratio : {0.1, 0.9}) {
       const CorrespondenceSet matches = testing::synthetic(rows, inlier_ratio, 1).matches;
