@@ -2,13 +2,13 @@
 #include "grouping/game_theory.h"
 
 #include "grouping/columns/canonical_order.h"
-#include "grouping/graph/payoffs.h"
+#include "grouping/graph/pair_matrix.h"
 
 namespace corral {
 namespace {
 
 /// One round; false without any gain.
-bool evolve(const Payoffs& payoffs, AlignedColumn& shares, AlignedColumn& gains) {
+bool evolve(const PairMatrix& payoffs, AlignedColumn& shares, AlignedColumn& gains) {
   payoffs.multiply(shares, gains);
   double mean = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) mean += shares[i] * gains[i];
@@ -19,7 +19,7 @@ bool evolve(const Payoffs& payoffs, AlignedColumn& shares, AlignedColumn& gains)
 
 GroupingResult group_in_order(const CorrespondenceSet& matches, const GameTheoryOptions& options) {
   const auto rows = static_cast<std::size_t>(matches.size());
-  const Payoffs payoffs(matches, options.distinct);
+  const PairMatrix payoffs = PairMatrix::of_ratios(matches, options.distinct);
   AlignedColumn shares(static_cast<std::size_t>(padded(matches.size())), 0), gains(shares);
   std::fill_n(shares.begin(), rows, 1.0 / matches.size());
   for (int round = 0; round < options.rounds; ++round)
@@ -41,7 +41,7 @@ GroupingResult group_by_game_theory(const CorrespondenceSet& matches, const Game
 }
 
 double working_memory(int matches, const GameTheoryOptions& options) {
-  return canonical_order_memory(matches) + Payoffs::memory(matches) + 24.0 * padded(matches) +
+  return canonical_order_memory(matches) + PairMatrix::memory(matches) + 24.0 * padded(matches) +
          otsu_memory(matches, options.otsu);
 }
 

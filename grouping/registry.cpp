@@ -7,6 +7,7 @@
 #include "grouping/hough_voting.h"
 #include "grouping/nearest_neighbor_ratio.h"
 #include "grouping/ransac.h"
+#include "grouping/sc2pcr.h"
 #include "grouping/search_of_inliers.h"
 #include "grouping/similarity_score.h"
 #include "grouping/spectral.h"
@@ -48,6 +49,8 @@ const std::vector<Grouper>& groupers() {
             group_by_search_of_inliers),
       entry("turboreg", "TurboReg", "best pose of triangles on edges with many common neighbours", "yan2025turboreg",
             group_by_turboreg),
+      entry("sc2pcr", "Second-order spatial compatibility (SC2-PCR)",
+            "best pose of seeds and those that agree with the same matches", "chen2022sc2pcr", group_by_sc2pcr),
       entry("tcf", "Two-stage consensus filtering (TCF)", "consensus on one match, two, three, then a robust fit",
             "shi2024tcf", group_by_tcf),
       entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners",

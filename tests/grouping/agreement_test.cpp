@@ -9,6 +9,7 @@
 
 #include "grouping/ransac.h"
 #include "tests/support/reference_groupers.h"
+#include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
 #include "tests/support/same_result.h"
 #include "tests/support/tables.h"
@@ -234,6 +235,20 @@ TEST(Agreement, Turboreg) {
   for (const int pivots : {1, 10, 100}) {
     options.pivots = pivots;
     expect_identical(group_by_turboreg, reference::turboreg, options, tables({50, 120, 300}, 2));
+  }
+}
+
+TEST(Agreement, Sc2pcr) {
+  Sc2pcrOptions options;
+  expect_identical(group_by_sc2pcr, reference::sc2pcr, options, tables({60, 250}, 3));
+  expect_identical(group_by_sc2pcr, reference::sc2pcr, options, tables({500}, 1));
+  options.score = PoseScore::Mae;
+  options.refit_rounds = 0;
+  options.seed_share = 1;
+  for (const int neighbours : {3, 10, 1000}) {
+    options.neighbours = neighbours;
+    options.kept = neighbours == 1000 ? 100 : 5;
+    expect_identical(group_by_sc2pcr, reference::sc2pcr, options, tables({50, 120, 200}, 2));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
 
 namespace corral::testing {
@@ -74,6 +75,7 @@ std::vector<GrouperVariant> make_variants() {
   const Method hough(group_by_hough_voting, reference::hough_voting);
   const Method si(group_by_search_of_inliers, reference::search_of_inliers);
   const Method turboreg(group_by_turboreg, reference::turboreg);
+  const Method sc2pcr(group_by_sc2pcr, reference::sc2pcr);
   const Promises unlike = promising(Copies::Unlike), both = promising(Copies::Both), first = promising(Copies::First);
   return {
       ss("ss", both),
@@ -104,6 +106,9 @@ std::vector<GrouperVariant> make_variants() {
       turboreg("turboreg_raw", unlike, {{"refit_rounds", "0"}, {"edge_pr", "0.5"}, {"score", "mse"}}),
       turboreg("turboreg_few_pivots", unlike, {{"pivots", "3"}, {"min_length_pr", "0"}, {"score", "mae"}}),
       turboreg("turboreg_oamae", of_one_side(), {{"score", "oamae"}}),  // for each point of the target
+      sc2pcr("sc2pcr", of_one_side()),                                  // seeds are apart in the source
+      sc2pcr("sc2pcr_raw", of_one_side(), {{"refit_rounds", "0"}, {"seed_share", "0.5"}, {"score", "mae"}}),
+      sc2pcr("sc2pcr_small", of_one_side(), {{"neighbours", "5"}, {"kept", "4"}, {"distance_pr", "2"}}),
   };
 }
 

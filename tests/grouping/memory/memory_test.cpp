@@ -72,23 +72,22 @@ std::ostream& operator<<(std::ostream& stream, const Case& of) {
 
 class WorkingMemory : public ::testing::TestWithParam<Case> {};
 
-INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
-                         ::testing::Values(Case{"ss", {}}, Case{"ss", {{"otsu", "bins100"}}}, Case{"nnsr", {}},
-                                           Case{"ransac", {{"iterations", "500"}}},
-                                           Case{"ransac", {{"iterations", "500"}, {"sampling", "prosac"}}},
-                                           Case{"st", {}}, Case{"st", {{"once", "true"}}},
-                                           Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
-                                           Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
-                                           Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
-                                           Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
-                                           Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"tcf", {}},
-                                           Case{"gtm", {}}, Case{"cv", {}}));
+INSTANTIATE_TEST_SUITE_P(
+    Groupers, WorkingMemory,
+    ::testing::Values(Case{"ss", {}}, Case{"ss", {{"otsu", "bins100"}}}, Case{"nnsr", {}},
+                      Case{"ransac", {{"iterations", "500"}}},
+                      Case{"ransac", {{"iterations", "500"}, {"sampling", "prosac"}}}, Case{"st", {}},
+                      Case{"st", {{"once", "true"}}}, Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
+                      Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}}, Case{"hough", {{"cells", "pr5"}}},
+                      Case{"si", {}}, Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
+                      Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"sc2pcr", {}},
+                      Case{"sc2pcr", {{"keep", "2"}}}, Case{"tcf", {}}, Case{"gtm", {}}, Case{"cv", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
   const ConfiguredGrouper grouper = find_grouper(GetParam().method).configure(GetParam().options);
   const std::string method = GetParam().method;
-  const bool is_quadratic =
-      method == "st" || method == "turboreg" || method == "gtm" || GetParam().options.count("cluster") > 0;
+  const bool is_quadratic = method == "st" || method == "turboreg" || method == "sc2pcr" || method == "gtm" ||
+                            GetParam().options.count("cluster") > 0;
   for (const int rows : {0, 1, 10, 100, 700, is_quadratic ? 1500 : 8000})
     for (const double inlier_ratio : {0.1, 0.9}) {
       const CorrespondenceSet matches = testing::synthetic(rows, inlier_ratio, 1).matches;
