@@ -2,21 +2,17 @@
 #pragma once
 
 #include "kernel/rigid_transform.h"
+#include "kernel/surface/search/coincidence.h"
 #include "kernel/surface/search/nearest_points.h"
 
 namespace corral {
-
-/// Points and unit normals of a surface, N x 3 each; a zero row is a point without a normal.
-struct OrientedPoints {
-  const Points &points, &normals;
-};
 
 /// How well two surfaces lie on each other under a pose T, 0 .. 1, without any ground truth:
 ///
 ///   c(X, Y) = 1/|X| sum over x in X of max(0, 1 - d(x, Y) / reach) |n_x . n_y|,   y the nearest point of Y
 ///   coverage = (c(T source, target) + c(T^-1 target, source)) / 2
 ///
-/// d is the distance to the nearest vertex. At most 20,000 vertices of a surface are asked, at even steps through their list.
+/// d is the distance to the nearest vertex; a zero row is a point without a normal. At most 20,000 vertices of a surface are asked, at even steps through their list.
 ///
 /// Source    the truncated distances of [chen2023sc2pcr], divided by the number of points that are asked (there: that are
 ///           covered, so that a single covered point is full marks), times the agreement of the normals up to their side.
