@@ -2,6 +2,7 @@
 #include "grouping/registry.h"
 
 #include "grouping/consistency_voting.h"
+#include "grouping/frame_ransac.h"
 #include "grouping/game_theory.h"
 #include "grouping/geometric_consistency.h"
 #include "grouping/hough_voting.h"
@@ -57,6 +58,8 @@ const std::vector<Grouper>& groupers() {
             "rodola2013scale", group_by_game_theory),
       entry("cv", "Consistency voting (CV)", "lengths and frames agree with a few distinctive matches",
             "yang2021performance", group_by_consistency_voting),
+      entry("frame-ransac", "One-point RANSAC with frames", "best pose that one match proposes by its frames",
+            "guo2013rotational", group_by_frame_ransac),
   };
   return table;
 }

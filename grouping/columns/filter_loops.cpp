@@ -141,6 +141,27 @@ HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int
   return near;
 }
 
+HWY_FLATTEN void add_near(const FilterTable& table, int first, int last, const PoseFilter (&poses)[kPoseTile],
+                          int (&counts)[kPoseTile]) {
+  const Columns columns(table);
+  const Floats one = Floats::fill(1);
+  Floats inside[kPoseTile];
+  for (Floats& count : inside) count = Floats::fill(0);
+  for (int row = first; row < last; row += kFloatLanes) {
+    const auto p = Point::load(columns.source, row), q = Point::load(columns.target, row);
+    for (int k = 0; k < kPoseTile; ++k) {
+      const float *r = poses[k].rotation, *t = poses[k].translation;
+      const auto component = [&](int axis, Floats target) HWY_ATTR {
+        return Floats::fill(r[3 * axis]) * p.x + Floats::fill(r[3 * axis + 1]) * p.y +
+               Floats::fill(r[3 * axis + 2]) * p.z + (Floats::fill(t[axis]) - target);
+      };
+      const Floats x = component(0, q.x), y = component(1, q.y), z = component(2, q.z);
+      inside[k] = counted(x * x + y * y + z * z <= Floats::fill(poses[k].possible), inside[k], one);
+    }
+  }
+  for (int k = 0; k < kPoseTile; ++k) counts[k] += total(inside[k]);
+}
+
 struct Similarity {
   Floats certain_slope, possible_slope, offset;
   explicit Similarity(const SimilarityFilter& filter)
@@ -266,6 +287,7 @@ namespace corral {
 
 HWY_EXPORT(count_consistent);
 HWY_EXPORT(count_near_first_plane);
+HWY_EXPORT(add_near);
 HWY_EXPORT(count_near);
 HWY_EXPORT(compare_ratios);
 HWY_EXPORT(measure_distances);
@@ -280,6 +302,11 @@ void count_consistent(const ConsistencyFilter& filter, int* counts) {
 
 void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
   HWY_DYNAMIC_DISPATCH(count_near_first_plane)(table, poses, counts);
+}
+
+void add_near(const FilterTable& table, int first, int last, const PoseFilter (&poses)[kPoseTile],
+              int (&counts)[kPoseTile]) {
+  HWY_DYNAMIC_DISPATCH(add_near)(table, first, last, poses, counts);
 }
 
 int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {

@@ -24,6 +24,11 @@ void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[
 /// there are no more. `near_plane` is the count above for this pose.
 int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless);
 
+/// counts[k], plus for how many rows of first .. last - 1, whole numbers of lanes, the residual under pose k is possibly below
+/// the tolerance. For poses by the hundred: a stretch of rows that fits the cache is read for all of them.
+void add_near(const FilterTable& table, int first, int last, const PoseFilter (&poses)[kPoseTile],
+              int (&counts)[kPoseTile]);
+
 /// One bit for each pair of a row and the columns 8 block .. 8 block + 7: certain[i] and possible[i] hold those of row i,
 /// the first column in the lowest bit. Padded.
 void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grouping/ransac.h"
+#include "tests/support/reference_frame_ransac.h"
 #include "tests/support/reference_groupers.h"
 #include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
@@ -250,6 +251,18 @@ TEST(Agreement, Sc2pcr) {
     options.kept = neighbours == 1000 ? 100 : 5;
     expect_identical(group_by_sc2pcr, reference::sc2pcr, options, tables({50, 120, 200}, 2));
   }
+}
+
+TEST(Agreement, FrameRansac) {
+  FrameRansacOptions options;
+  expect_identical(group_by_frame_ransac, reference::frame_ransac, options, tables({60, 250}, 3));
+  expect_identical(group_by_frame_ransac, reference::frame_ransac, options, tables({500}, 1));
+  for (const PoseScore score : {PoseScore::Mae, PoseScore::Oamae})
+    for (const int polish : {0, 1, 10}) {
+      options.score = score;
+      options.polish = polish;
+      expect_identical(group_by_frame_ransac, reference::frame_ransac, options, tables({50, 120, 300}, 2));
+    }
 }
 
 }  // namespace

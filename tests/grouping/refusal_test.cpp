@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -150,8 +151,11 @@ TEST_P(RefusedOption, UnknownNameIsAnsweredWithTheKnownOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, RefusedTable, ::testing::ValuesIn(testing::grouper_variants()),
                          [](const auto& test) { return test.param.name; });
-INSTANTIATE_TEST_SUITE_P(Groupers, RefusedOption, ::testing::ValuesIn(names()),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Groupers, RefusedOption, ::testing::ValuesIn(names()), [](const auto& test) {
+  std::string name = test.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace corral

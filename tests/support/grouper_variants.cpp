@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tests/support/reference_frame_ransac.h"
 #include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
 
@@ -76,6 +77,7 @@ std::vector<GrouperVariant> make_variants() {
   const Method si(group_by_search_of_inliers, reference::search_of_inliers);
   const Method turboreg(group_by_turboreg, reference::turboreg);
   const Method sc2pcr(group_by_sc2pcr, reference::sc2pcr);
+  const Method frame_ransac(group_by_frame_ransac, reference::frame_ransac);
   const Promises unlike = promising(Copies::Unlike), both = promising(Copies::Both), first = promising(Copies::First);
   return {
       ss("ss", both),
@@ -109,6 +111,9 @@ std::vector<GrouperVariant> make_variants() {
       sc2pcr("sc2pcr", of_one_side()),                                  // seeds are apart in the source
       sc2pcr("sc2pcr_raw", of_one_side(), {{"refit_rounds", "0"}, {"seed_share", "0.5"}, {"score", "mae"}}),
       sc2pcr("sc2pcr_small", of_one_side(), {{"neighbours", "5"}, {"kept", "4"}, {"distance_pr", "2"}}),
+      frame_ransac("frame_ransac", unlike),  // three copies of a row agree with each other
+      frame_ransac("frame_ransac_textbook", unlike, {{"polish", "0"}}),
+      frame_ransac("frame_ransac_few", unlike, {{"polish", "2"}, {"score", "msac"}, {"tolerance_pr", "3"}}),
   };
 }
 

@@ -163,6 +163,12 @@ TEST(Filter, ResidualsAreBracketed) {
         const int near = count_near(table, filter, near_plane[0], -1);
         EXPECT_GE(near, expected);
         EXPECT_LE(near, near_plane[0]);
+        int in_parts[kPoseTile] = {};
+        add_near(table, 0, kFloatLanes, poses, in_parts);
+        EXPECT_LE(in_parts[0], near);
+        add_near(table, kFloatLanes, table.padded_rows(), poses, in_parts);
+        EXPECT_EQ(in_parts[0], in_parts[kPoseTile - 1]);
+        EXPECT_EQ(in_parts[0], near);
         for (const int hopeless : {0, expected - 1, expected, expected + 3}) {
           const int stopped = count_near(table, filter, near_plane[0], hopeless);
           EXPECT_EQ(stopped <= hopeless, near <= hopeless);

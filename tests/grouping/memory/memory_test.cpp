@@ -72,16 +72,18 @@ std::ostream& operator<<(std::ostream& stream, const Case& of) {
 
 class WorkingMemory : public ::testing::TestWithParam<Case> {};
 
-INSTANTIATE_TEST_SUITE_P(
-    Groupers, WorkingMemory,
-    ::testing::Values(Case{"ss", {}}, Case{"ss", {{"otsu", "bins100"}}}, Case{"nnsr", {}},
-                      Case{"ransac", {{"iterations", "500"}}},
-                      Case{"ransac", {{"iterations", "500"}, {"sampling", "prosac"}}}, Case{"st", {}},
-                      Case{"st", {{"once", "true"}}}, Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
-                      Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}}, Case{"hough", {{"cells", "pr5"}}},
-                      Case{"si", {}}, Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
-                      Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"sc2pcr", {}},
-                      Case{"sc2pcr", {{"keep", "2"}}}, Case{"tcf", {}}, Case{"gtm", {}}, Case{"cv", {}}));
+INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
+                         ::testing::Values(Case{"ss", {}}, Case{"ss", {{"otsu", "bins100"}}}, Case{"nnsr", {}},
+                                           Case{"ransac", {{"iterations", "500"}}},
+                                           Case{"ransac", {{"iterations", "500"}, {"sampling", "prosac"}}},
+                                           Case{"st", {}}, Case{"st", {{"once", "true"}}},
+                                           Case{"st", {{"weighted", "true"}}}, Case{"gc", {}},
+                                           Case{"gc", {{"cluster", "clique"}}}, Case{"hough", {}},
+                                           Case{"hough", {{"cells", "pr5"}}}, Case{"si", {}},
+                                           Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
+                                           Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"sc2pcr", {}},
+                                           Case{"sc2pcr", {{"keep", "2"}}}, Case{"tcf", {}}, Case{"gtm", {}},
+                                           Case{"cv", {}}, Case{"frame-ransac", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
   const ConfiguredGrouper grouper = find_grouper(GetParam().method).configure(GetParam().options);
