@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/registry.h"
 
+#include "grouping/clique.h"
 #include "grouping/consistency_voting.h"
 #include "grouping/frame_ransac.h"
 #include "grouping/game_theory.h"
@@ -52,6 +53,8 @@ const std::vector<Grouper>& groupers() {
             group_by_turboreg),
       entry("sc2pcr", "Second-order spatial compatibility (SC2-PCR)",
             "best pose of seeds and those that agree with the same matches", "chen2022sc2pcr", group_by_sc2pcr),
+      entry("clique", "Maximum clique (clique)", "largest set that keeps all its distances, robust pose of it",
+            "yang2021teaser", group_by_clique),
       entry("tcf", "Two-stage consensus filtering (TCF)", "consensus on one match, two, three, then a robust fit",
             "shi2024tcf", group_by_tcf),
       entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners",

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "tests/support/reference_frame_ransac.h"
+#include "tests/support/reference_clique.h"
 #include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
 
@@ -78,6 +79,7 @@ std::vector<GrouperVariant> make_variants() {
   const Method turboreg(group_by_turboreg, reference::turboreg);
   const Method sc2pcr(group_by_sc2pcr, reference::sc2pcr);
   const Method frame_ransac(group_by_frame_ransac, reference::frame_ransac);
+  const Method clique(group_by_clique, reference::clique);
   const Promises unlike = promising(Copies::Unlike), both = promising(Copies::Both), first = promising(Copies::First);
   return {
       ss("ss", both),
@@ -114,6 +116,9 @@ std::vector<GrouperVariant> make_variants() {
       frame_ransac("frame_ransac", unlike),  // three copies of a row agree with each other
       frame_ransac("frame_ransac_textbook", unlike, {{"polish", "0"}}),
       frame_ransac("frame_ransac_few", unlike, {{"polish", "2"}, {"score", "msac"}, {"tolerance_pr", "3"}}),
+      clique("clique", unlike),  // two rows that fit are nothing, twice as many are something
+      clique("clique_tight", unlike, {{"edge_pr", "1"}, {"refit", "kabsch"}}),
+      clique("clique_core", unlike, {{"structure", "core"}}),
   };
 }
 

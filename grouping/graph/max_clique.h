@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "grouping/graph/bit_graph.h"
+
+namespace corral {
+
+/// The largest cliques of a graph by branch and bound.
+///
+/// For each node in turn the cliques are searched that consist of it and nodes which are removed after it in the order of
+/// core_numbers(). Candidates are coloured so that neighbours differ; a branch is left when its clique and the number of
+/// colours together do not reach the size that is needed. A first clique is grown greedily from each node, neighbours of the
+/// largest core number first. Nodes whose core number is too small for that size never take part.
+/// Source    [tomita2003efficient] (colouring), [eppstein2010listing] (order).
+/// Cost      Exponential in the worst case. A step is one node put into a clique, and steps are bounded.
+class MaxCliqueSearch {
+ public:
+  explicit MaxCliqueSearch(const BitGraph& graph);
+
+  /// Bytes for so many nodes, beside the graph.
+  static double memory(int nodes);
+
+  /// One of the largest cliques, ascending: the first found. Absent if more than `max_steps` steps are needed.
+  std::optional<Indices> find_one(std::int64_t max_steps);
+
+  /// Calls visit(clique) for every clique of this size, which must be the largest; ascending. False if it was left after
+  /// `max_steps` steps.
+  using Visit = std::function<void(const Indices&)>;
+  bool visit_all(int size, std::int64_t max_steps, const Visit& visit);
+
+  std::int64_t steps() const { return steps_; }  ///< of the last call
+
+ private:
+  struct Level {
+    std::vector<BitGraph::Word> candidates, uncolored, one_color;
+    Indices order, colors;  ///< candidates that may lead to the size needed
+  };
+
+  Indices grow_from(int node) const;
+  bool search(std::int64_t max_steps);
+  Indices candidates_of(int node) const;
+  bool expand(const BitGraph& graph, std::size_t depth);
+  void color(const BitGraph& graph, Level& level, int least) const;
+  Indices names_of(const Indices& nodes) const;
+
+  Indices names_;  ///< nodes of the caller, the last removed first; here they are 0, 1, ...
+  Indices cores_;
+  BitGraph graph_;
+  std::vector<Level> levels_;
+  Indices clique_, candidates_;  ///< those of the present node; the clique holds places among them
+  int node_ = 0, needed_ = 0;
+  std::int64_t steps_ = 0, max_steps_ = 0;
+  std::function<void()> found_;
+};
+
+}  // namespace corral
