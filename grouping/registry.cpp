@@ -7,6 +7,7 @@
 #include "grouping/game_theory.h"
 #include "grouping/geometric_consistency.h"
 #include "grouping/hough_voting.h"
+#include "grouping/mac.h"
 #include "grouping/nearest_neighbor_ratio.h"
 #include "grouping/ransac.h"
 #include "grouping/sc2pcr.h"
@@ -55,6 +56,8 @@ const std::vector<Grouper>& groupers() {
             "best pose of seeds and those that agree with the same matches", "chen2022sc2pcr", group_by_sc2pcr),
       entry("clique", "Maximum clique (clique)", "largest set that keeps all its distances, robust pose of it",
             "yang2021teaser", group_by_clique),
+      entry("mac", "Maximal cliques (MAC)", "best pose of the heaviest maximal clique through each match", "zhang2023mac",
+            group_by_mac),
       entry("tcf", "Two-stage consensus filtering (TCF)", "consensus on one match, two, three, then a robust fit",
             "shi2024tcf", group_by_tcf),
       entry("gtm", "Game theory matching (GTM)", "what prevails when matches play for rigid partners",

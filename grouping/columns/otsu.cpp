@@ -103,6 +103,14 @@ Indices select_covis(const std::vector<double>& scores) {
 
 }  // namespace
 
+double otsu_bins100_threshold(const std::vector<double>& scores) {
+  if (scores.empty()) return 0;
+  const auto extremes = std::minmax_element(scores.begin(), scores.end());
+  const double low = *extremes.first, high = *extremes.second;
+  if (!(high > low)) return low;
+  return low + (high - low) / 100 * histogram_cut(scores, low, high, 100);
+}
+
 Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule) {
   for (const double score : scores)
     if (!std::isfinite(score)) throw InvalidInput("select_by_otsu", "score", score, "a finite number");

@@ -31,6 +31,9 @@ constexpr std::array<const char*, 3> choice_names(OtsuRule) { return {"exact", "
 /// Throws    InvalidInput if a score is not finite.
 Indices select_by_otsu(const std::vector<double>& scores, OtsuRule rule);
 
+/// The threshold of bins100; of equal scores that score, of none 0.
+double otsu_bins100_threshold(const std::vector<double>& scores);
+
 /// Peak memory in bytes for this many scores: the result as it grows, and for the exact rule a sorted copy and the classes.
 constexpr double otsu_memory(int scores, OtsuRule rule) {
   return (rule == OtsuRule::Exact ? 72.0 : 16.0) * scores + 4096;

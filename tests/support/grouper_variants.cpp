@@ -6,6 +6,7 @@
 
 #include "tests/support/reference_frame_ransac.h"
 #include "tests/support/reference_clique.h"
+#include "tests/support/reference_mac.h"
 #include "tests/support/reference_sc2pcr.h"
 #include "tests/support/reference_turboreg.h"
 
@@ -80,6 +81,7 @@ std::vector<GrouperVariant> make_variants() {
   const Method sc2pcr(group_by_sc2pcr, reference::sc2pcr);
   const Method frame_ransac(group_by_frame_ransac, reference::frame_ransac);
   const Method clique(group_by_clique, reference::clique);
+  const Method mac(group_by_mac, reference::mac);
   const Promises unlike = promising(Copies::Unlike), both = promising(Copies::Both), first = promising(Copies::First);
   return {
       ss("ss", both),
@@ -119,6 +121,9 @@ std::vector<GrouperVariant> make_variants() {
       clique("clique", unlike),  // two rows that fit are nothing, twice as many are something
       clique("clique_tight", unlike, {{"edge_pr", "1"}, {"refit", "kabsch"}}),
       clique("clique_core", unlike, {{"structure", "core"}}),
+      mac("mac", unlike, {{"max_steps", "1000000"}}),  // the reference has no bound
+      mac("mac_tight", unlike,
+          {{"gate", "0.999"}, {"score", "inliers"}, {"refit_rounds", "0"}, {"cliques_per_node", "2"}}),
   };
 }
 

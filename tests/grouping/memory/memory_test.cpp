@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Groupers, WorkingMemory,
                                            Case{"si", {{"form", "covis"}}}, Case{"turboreg", {}},
                                            Case{"turboreg", {{"keep", "2"}, {"pivots", "100"}}}, Case{"sc2pcr", {}},
                                            Case{"sc2pcr", {{"keep", "2"}}}, Case{"tcf", {}}, Case{"gtm", {}},
-                                           Case{"cv", {}}, Case{"frame-ransac", {}}));
+                                           Case{"cv", {}}, Case{"frame-ransac", {}}, Case{"clique", {}}, Case{"clique", {{"structure", "core"}}}, Case{"mac", {}}));
 
 TEST_P(WorkingMemory, IsNeverMoreThanStatedAndNotMuchLess) {
   const ConfiguredGrouper grouper = find_grouper(GetParam().method).configure(GetParam().options);

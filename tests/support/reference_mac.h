@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "grouping/mac.h"
+#include "tests/support/reference_groupers.h"
+
+namespace corral::reference {
+
+/// Without the bound on the steps; not for Fs.
+Selection mac(const CorrespondenceSet& matches, const MacOptions& options);
+
+}  // namespace corral::reference
