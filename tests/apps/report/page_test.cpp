@@ -31,7 +31,7 @@ class Page : public ::testing::Test {
       GTEST_SKIP() << "libjs-three or libjs-chart.js is not installed";
     const ExperimentInfo experiment{
         "noise",      "Noise <b> & \"more\" </script><script>alert(1)</script>", "a",          "spheres", "noise_pr",
-        "noise (pr)", {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.3", 0.3, 0.3}}, {"ss", "gc"}, 4,         1};
+        "noise (pr)", {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.3", 0.3, 0.3}}, {"ss", "gc"}, {}, 4, 1};
     std::vector<StudyCase> cases;
     for (const int seed : {1, 2}) {
       const Mesh sphere = bumpy_sphere(3, static_cast<std::uint64_t>(seed));
@@ -211,7 +211,7 @@ TEST_F(Page, APairThatCannotBeDrawnIsSaidSo) {
 /// A run of a level whose pairs have these F1 for one method, and another level that shares the first pair.
 StudyFolder run_of(const std::vector<std::optional<double>>& f1) {
   StudyFolder run;
-  run.experiments = {{"e", "", "", "d", "", "", {{"1", 1, 1}, {"2", 2, 2}}, {"gc"}, 4, 1}};
+  run.experiments = {{"e", "", "", "d", "", "", {{"1", 1, 1}, {"2", 2, 2}}, {"gc"}, {}, 4, 1}};
   for (std::size_t i = 0; i < f1.size(); ++i)
     for (const char* method : {"gc", "oracle"}) {
       StudyRecord record;

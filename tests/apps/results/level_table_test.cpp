@@ -42,7 +42,7 @@ StudyRecord record_of(const std::string& pair, const std::string& method, int tr
 
 StudyFolder run_of(const std::vector<StudyRecord>& records) {
   StudyFolder run;
-  run.experiments.push_back({"noise", "", "", "b3r", "noise_pr", "", {testing::step(0.1)}, {"gc"}, 4, 1});
+  run.experiments.push_back({"noise", "", "", "b3r", "noise_pr", "", {testing::step(0.1)}, {"gc"}, {}, 4, 1});
   run.records = records;
   return run;
 }
