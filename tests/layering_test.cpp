@@ -72,6 +72,10 @@ std::map<std::string, Room> make_rooms() {
   rooms["apps/report/figure"] = {under_figures, kAppLibraries};
   rooms["apps/report/figure"].libraries.insert("fontconfig");  // measures text
   rooms["apps"] = {below, kAppLibraries};                      // the program itself
+  Names for_python = {"apps/python/module", "apps/pair", "apps/runtime"};  // as its CMakeLists.txt builds it
+  for (const auto& [room, rules] : rooms)
+    if (room.rfind("apps", 0) != 0) for_python.insert(room);
+  rooms["apps/python/module"] = {for_python, {"Eigen", "pybind11"}};
   return rooms;
 }
 const std::map<std::string, Room> kRooms = make_rooms();
