@@ -141,7 +141,7 @@ GroupingResult group_by_clique(const CorrespondenceSet& matches, const CliqueOpt
 
 double working_memory(int matches, const CliqueOptions& options) {
   const bool searches = options.structure == DenseStructure::Clique;
-  return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + 40.0 * matches +
+  return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + 440.0 * matches +
          (searches ? MaxCliqueSearch::memory(matches) : 0) + PoseChoice::memory(matches, 1, {});
 }
 

@@ -92,6 +92,32 @@ class HeaviestCliques {
   Indices uses_, free_;
 };
 
+/// The weights of cliques one after the other: what two that follow begin with is not added up again.
+class CliqueWeigher {
+ public:
+  explicit CliqueWeigher(const EdgeWeights& weights)
+      : weights_(weights), is_member_(static_cast<std::size_t>(weights.size())) {}
+
+  double operator()(const Indices& clique) {
+    const auto common = std::mismatch(clique_.begin(), clique_.end(), clique.begin(), clique.end()).first;
+    for (auto node = common; node != clique_.end(); ++node) is_member_[static_cast<std::size_t>(*node)] = 0;
+    sums_.resize(static_cast<std::size_t>(common - clique_.begin()));
+    clique_.resize(sums_.size());
+    while (clique_.size() < clique.size()) {
+      const int node = clique[clique_.size()];
+      sums_.push_back((sums_.empty() ? 0 : sums_.back()) + weights_.sum_of_products(node, is_member_));
+      is_member_[static_cast<std::size_t>(node)] = 1;
+      clique_.push_back(node);
+    }
+    return sums_.back();
+  }
+
+ private:
+  const EdgeWeights& weights_;
+  std::vector<double> is_member_, sums_;  ///< 0 or 1 for each node; of the first nodes of the clique
+  Indices clique_;
+};
+
 class Grouping {
  public:
   Grouping(const CorrespondenceSet& matches, const MacOptions& options)
@@ -170,12 +196,17 @@ class Grouping {
   std::vector<WeighedClique> find_cliques(Indices nodes) {
     InducedSubgraphs induced(graph_);
     for (std::int64_t halvings = 0;; ++halvings) {
-      HeaviestCliques heaviest(static_cast<int>(nodes.size()), options_.cliques_per_node);
+      HeaviestCliques heaviest(graph_.size(), options_.cliques_per_node);
+      CliqueWeigher weigh(weights_);
       std::int64_t cliques = 0;
       const auto steps =
           visit_maximal_cliques(induced(nodes), kSmallestClique, options_.max_steps, [&](const Indices& clique) {
             ++cliques;
-            heaviest.offer({weight_of(clique, nodes), clique});
+            WeighedClique weighed{0, clique};
+            for (int& node : weighed.nodes) node = nodes[static_cast<std::size_t>(node)];
+            weighed.weight = weigh(weighed.nodes);
+            std::sort(weighed.nodes.begin(), weighed.nodes.end());
+            heaviest.offer(weighed);
           });
       if (!steps) {
         halve(nodes);
@@ -183,19 +214,8 @@ class Grouping {
       }
       notes_ = {{"steps", *steps}, {"cliques", cliques}};
       if (halvings > 0) notes_.push_back({"halvings", halvings});
-      std::vector<WeighedClique> found = heaviest.all();
-      for (WeighedClique& clique : found)
-        for (int& node : clique.nodes) node = nodes[static_cast<std::size_t>(node)];
-      return found;
+      return heaviest.all();
     }
-  }
-
-  double weight_of(const Indices& clique, const Indices& nodes) const {
-    double sum = 0;
-    for (std::size_t a = 0; a < clique.size(); ++a)
-      for (std::size_t b = a + 1; b < clique.size(); ++b)
-        sum += weights_.weight(nodes[static_cast<std::size_t>(clique[a])], nodes[static_cast<std::size_t>(clique[b])]);
-    return sum;
   }
 
   void halve(Indices& nodes) const {
@@ -223,11 +243,11 @@ GroupingResult group_by_mac(const CorrespondenceSet& matches, const MacOptions& 
 }
 
 double working_memory(int matches, const MacOptions& options) {
-  const double hypotheses = 1.0 * options.cliques_per_node * matches;
-  // The weights of edges, those behind c, the searches, and the cliques that matches name.
-  return canonical_order_memory(matches) + BitGraph::memory(matches) + 2 * EdgeWeights::memory(matches) +
-         maximal_cliques_memory(matches) + 4.0 * matches * matches + 100 * hypotheses +
-         PoseChoice::memory(matches, hypotheses, rule_of(options));
+  const double pairs = 1.0 * matches * matches, hypotheses = 1.0 * options.cliques_per_node * matches;
+  // The weights of edges; then those behind c, or the cliques that matches name.
+  const double later = std::max(EdgeWeights::memory(matches) + 8 * pairs, 4 * options.cliques_per_node * pairs);
+  return canonical_order_memory(matches) + BitGraph::memory(matches) + EdgeWeights::memory(matches) + later +
+         maximal_cliques_memory(matches) + 100 * hypotheses + PoseChoice::memory(matches, hypotheses, rule_of(options));
 }
 
 }  // namespace corral

@@ -10,7 +10,7 @@ namespace corral {
 struct MacOptions {
   double gate = 0.99;
   int cliques_per_node = 1;
-  int max_steps = 100000;
+  int max_steps = 20000;
   PoseScore score = PoseScore::Mae;
   double tolerance_pr = 5;
   int refit_rounds = 20;

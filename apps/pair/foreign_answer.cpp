@@ -19,7 +19,7 @@ namespace {
 void need(const std::string& name) {
   std::error_code ignored;
   if (!std::filesystem::exists(split_transform_name(name).file, ignored))
-    throw IoError(name, "", "no answer to this pair: the file is not there");
+    throw IoError(name, "", "does not exist: no answer to this pair");
 }
 
 /// Absent where the table has no row of the pair, or an empty cell.

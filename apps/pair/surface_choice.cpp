@@ -17,6 +17,12 @@ SurfaceCoverage coverage_of(const Mesh& source, const Mesh& target, const Parall
   return {{source.vertices, source_normals}, {target.vertices, target_normals}};
 }
 
+Indices agreeing_with(const CorrespondenceSet& matches, const RigidTransform& pose) {
+  std::vector<double> residuals;
+  measure_residuals(matches, pose, residuals);
+  return rows_within(residuals, kTolerancePr * matches.resolution);
+}
+
 }  // namespace
 
 SurfaceChoice::SurfaceChoice(const Mesh& source, const Mesh& target, const ParallelFor& parallel)
@@ -29,15 +35,14 @@ GroupingResult SurfaceChoice::operator()(const CorrespondenceSet& matches, const
   std::size_t best = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     RigidTransform& pose = poses[i].target_from_source;
-    if (const auto refined = refine_over_all(matches, pose).target_from_source) pose = *refined;
+    if (const auto refined = refine_rigid(matches, agreeing_with(matches, pose), {}, pose).target_from_source)
+      pose = *refined;
     poses[i].score = coverage_(pose, kReachPr * matches.resolution);
     if (poses[i].score > poses[best].score) best = i;
   }
   GroupingResult chosen = found;
   if (best == 0) return chosen;
-  std::vector<double> residuals;
-  measure_residuals(matches, poses[best].target_from_source, residuals);
-  chosen.selected = rows_within(residuals, kTolerancePr * matches.resolution);
+  chosen.selected = agreeing_with(matches, poses[best].target_from_source);
   if (chosen.selected.size() < kFewestRows) return found;
   chosen.target_from_source = poses[best].target_from_source;
   return chosen;

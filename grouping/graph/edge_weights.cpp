@@ -20,7 +20,7 @@ std::vector<double> EdgeWeights::path_sums() const {
       row[static_cast<std::size_t>(neighbors_[edge])] = weights_[edge];
     for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < end(node); ++edge) {
       const int other = neighbors_[edge];
-      sums[edge] = sums[back[static_cast<std::size_t>(other)]++] = weights_[edge] * product(row, other);
+      sums[edge] = sums[back[static_cast<std::size_t>(other)]++] = weights_[edge] * sum_of_products(other, row);
     }
     for (std::size_t edge = begin(node); edge < end(node); ++edge) row[static_cast<std::size_t>(neighbors_[edge])] = 0;
   }
@@ -28,9 +28,11 @@ std::vector<double> EdgeWeights::path_sums() const {
 }
 
 /// Four sums side by side, so that none waits for the last addition.
-double EdgeWeights::product(const std::vector<double>& row, int node) const {
+double EdgeWeights::sum_of_products(int node, const std::vector<double>& factors) const {
   double sums[4] = {0, 0, 0, 0};
-  const auto term = [&](std::size_t edge) { return row[static_cast<std::size_t>(neighbors_[edge])] * weights_[edge]; };
+  const auto term = [&](std::size_t edge) {
+    return factors[static_cast<std::size_t>(neighbors_[edge])] * weights_[edge];
+  };
   std::size_t edge = begin(node);
   for (; edge + 4 <= end(node); edge += 4)
     for (std::size_t k = 0; k < 4; ++k) sums[k] += term(edge + k);

@@ -27,7 +27,7 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph) : graph_(0) {
 
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
-  return 40.0 * nodes + InducedSubgraphs::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+  return 440.0 * nodes + InducedSubgraphs::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
 }
 
 std::optional<Indices> MaxCliqueSearch::find_one(std::int64_t max_steps) {

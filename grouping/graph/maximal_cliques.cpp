@@ -108,10 +108,7 @@ class Enumeration {
 
   void report(const Level& level) {
     if (clique_.size() < smallest_) return;
-    if (std::any_of(level.excluded.begin(), level.excluded.end(), [](Word word) { return word != 0; })) return;
-    Indices sorted = clique_;
-    std::sort(sorted.begin(), sorted.end());
-    visit_(sorted);
+    if (std::all_of(level.excluded.begin(), level.excluded.end(), [](Word word) { return word == 0; })) visit_(clique_);
   }
 
   const Indices names_;  ///< of the caller, in the order of removal; here they are 0, 1, ...

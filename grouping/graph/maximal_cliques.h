@@ -8,7 +8,8 @@
 
 namespace corral {
 
-/// Calls visit(clique) for every clique of at least `smallest` nodes that no node extends, each once, its nodes ascending.
+/// Calls visit(clique) for every clique of at least `smallest` nodes that no node extends, each once. Its nodes are in the order
+/// in which they were put into it: one clique and the next begin alike as far as the search has not gone back.
 ///
 /// For each node in the order of core_numbers() the cliques are searched in which it is the first that is removed: with P its
 /// later and X its earlier neighbours, a clique is complete where P and X are both empty, and only nodes of P are tried that

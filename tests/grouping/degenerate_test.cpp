@@ -59,7 +59,8 @@ TEST_P(DegenerateTables, AnswerIsThatOfTheReference) {
 TEST_P(DegenerateTables, ThreeRowsAThousandTimes) {
   const CorrespondenceSet three = testing::synthetic(3, 0.67, 1).matches;
   Indices rows;
-  for (int row = 0; row < 3000; ++row) rows.push_back(row % 3);
+  const bool is_cubic = GetParam().name.rfind("mac", 0) == 0;  // in the rows that are all compatible
+  for (int row = 0; row < (is_cubic ? 300 : 3000); ++row) rows.push_back(row % 3);
   const CorrespondenceSet matches = select_rows(three, rows);
   // The dense solver of the reference would work for minutes on 3000 rows. That copies in conflict change nothing is
   // worked out and tested in property_test.cpp.

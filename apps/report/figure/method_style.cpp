@@ -13,12 +13,20 @@ const std::map<std::string, MethodStyle> kKnown = {{"ss", {"SS", "#000000", 7, "
                                                    {"gc", {"GC", "#009e73", 13, ""}},
                                                    {"hough", {"3DHV", "#56b4e9", 15, "(8,4,2,4)"}},
                                                    {"si", {"SI", "#d55e00", 6, "(4,3)"}},
+                                                   {"turboreg", {"TurboReg", "#882255", 4, ""}},
+                                                   {"sc2pcr", {"SC2-PCR", "#999933", 8, "(6,3)"}},
+                                                   {"clique", {"clique", "#332288", 10, ""}},
+                                                   {"mac", {"MAC", "#aa4499", 12, "(6,3)"}},
+                                                   {"tcf", {"TCF", "#117733", 14, ""}},
+                                                   {"gtm", {"GTM", "#661100", 1, "(6,3)"}},
+                                                   {"cv", {"CV", "#6699cc", 2, ""}},
+                                                   {"frame-ransac", {"frame RANSAC", "#ddcc77", 3, "(6,3)"}},
                                                    {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
                                                    {"baseline", {"baseline", "#888888", 0, "(10,5)"}}};
 
-// For groupers that are not in the paper: colours and markers that none of the seven has.
-const std::vector<std::string> kFurtherColors = {"#882255", "#999933", "#332288", "#aa4499",
-                                                 "#117733", "#661100", "#6699cc", "#aa4466"};
+// For methods that are not among the groupers: colours that none of those has, and markers that none of the paper has.
+const std::vector<std::string> kFurtherColors = {"#44aa99", "#bb5566", "#004488", "#ddaa33",
+                                                 "#225522", "#aa7744", "#777711", "#ee8866"};
 const std::vector<int> kFurtherPoints = {4, 8, 10, 12, 14, 1, 2, 3};
 
 }  // namespace

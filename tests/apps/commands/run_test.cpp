@@ -186,7 +186,8 @@ TEST(Run, TheFolderAgreesWithTheSingleCommands) {
     EXPECT_EQ(place.text("pose.txt"), place.text(pose)) << "both absent if there is no pose";
     std::filesystem::remove(place / "pose.txt");
     auto alone = refined.json(), inside = nlohmann::json::parse(place.text("out/deep/refine_" + name + ".json"));
-    for (const char* key : {"rmse_pr", "mean_error_pr", "success_from_pr", "add_share", "success_add"})
+    for (const char* key :
+         {"rmse_pr", "mean_error_pr", "success_from_pr", "add_share", "success_add", "add_s_share", "success_add_s"})
       for (const std::string prefix : {"", "initial_"}) {  // over the right matches there, over the overlap here
         alone.erase(prefix + key);
         inside.erase(prefix + key);

@@ -106,7 +106,7 @@ TEST_F(Foreign, WhatCannotBeReadIsAFailureOfTheMethod) {
     return record.failure;
   };
   const std::string good = labels(made_.inliers), missing = folder_ / "missing.txt";
-  EXPECT_EQ(failure({missing, "", "", {}}), missing + ": no answer to this pair: the file is not there");
+  EXPECT_EQ(failure({missing, "", "", {}}), missing + ": does not exist: no answer to this pair");
   EXPECT_THAT(failure({good, missing + ":4,0", "", {}}), HasSubstr("no answer to this pair"));
   EXPECT_THAT(failure({put_text(folder_ / "l.txt", "1\n100\n"), "", "", {}}), HasSubstr("l.txt, line 2"));
   EXPECT_THAT(failure({"", put_text(folder_ / "p.txt", "1 0 0 nan\n0 1 0 0\n0 0 1 0\n"), "", {}}), HasSubstr("p.txt"));

@@ -28,6 +28,7 @@ TEST(MethodStatus, IsThatOfThePose) {
        {RefineStatus::Refined, RefineStatus::TooFewRows, RefineStatus::DegenerateGeometry, RefineStatus::Diverged}) {
     RefinedPose pose;
     pose.status = status;
+    pose.converged = true;
     EXPECT_EQ(to_text(status_of(pose)), to_text(status));
   }
   RefinedPose moving;

@@ -21,7 +21,7 @@ struct Case {
     truth.rotation = RandomStream(1).rotation();
     wrong.rotation = RandomStream(2).rotation();
     target.vertices = truth.apply(source.vertices);
-    matches.resolution = 0.05;
+    matches.resolution = 0.005;
     matches.source_points = source.vertices.topRows(30);
     matches.target_points.resize(30, 3);
     matches.target_points.topRows(10) = truth.apply(matches.source_points.topRows(10));

@@ -25,11 +25,17 @@ TEST(EdgeWeights, SumsOfPathsAreThoseOfAMatrixProduct) {
     }());
     weights.set(weights.path_sums());
     const Eigen::MatrixXd expected = matrix.cwiseProduct(matrix * matrix);
+    Eigen::MatrixXd found = Eigen::MatrixXd::Zero(nodes, nodes);
     for (int node = 0; node < nodes; ++node)
-      weights.for_edges(node, [&](int other, double sum) {
-        EXPECT_NEAR(sum, expected(node, other), 1e-12 * expected(node, other));
-        EXPECT_EQ(sum, weights.weight(other, node));
-      });
+      weights.for_edges(node, [&](int other, double sum) { found(node, other) = sum; });
+    EXPECT_EQ(found, found.transpose());
+    EXPECT_LE((found - expected).cwiseAbs().sum(), 1e-12 * expected.sum());
+    std::vector<double> factors;
+    for (int node = 0; node < nodes; ++node) factors.push_back(node % 3);
+    for (int node = 0; node < nodes; ++node)
+      EXPECT_NEAR(weights.sum_of_products(node, factors),
+                  expected.row(node).dot(Eigen::Map<const Eigen::VectorXd>(factors.data(), nodes)),
+                  1e-12 * expected.sum());
   }
 }
 

@@ -19,7 +19,10 @@ constexpr std::int64_t kEnough = 1000000;
 
 std::vector<Indices> maximal_cliques(const BitGraph& graph, int smallest = 1) {
   std::vector<Indices> found;
-  EXPECT_TRUE(visit_maximal_cliques(graph, smallest, kEnough, [&](const Indices& clique) { found.push_back(clique); }));
+  EXPECT_TRUE(visit_maximal_cliques(graph, smallest, kEnough, [&](const Indices& clique) {
+    found.push_back(clique);
+    std::sort(found.back().begin(), found.back().end());
+  }));
   std::sort(found.begin(), found.end());
   return found;
 }
@@ -53,8 +56,9 @@ TEST(MaximalCliques, OfGroupsOfThree) {
   ASSERT_TRUE(steps);
   EXPECT_EQ(count, 59049);
   EXPECT_TRUE(visit_maximal_cliques(graph, 3, *steps, visit));
-  count = 0;
   EXPECT_FALSE(visit_maximal_cliques(graph, 3, *steps - 1, visit));
+  count = 0;
+  EXPECT_FALSE(visit_maximal_cliques(graph, 3, *steps / 2, visit));
   EXPECT_LT(count, 59049);
 }
 
