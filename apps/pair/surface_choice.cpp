@@ -30,21 +30,24 @@ SurfaceChoice::SurfaceChoice(const Mesh& source, const Mesh& target, const Paral
 
 GroupingResult SurfaceChoice::operator()(const CorrespondenceSet& matches, const GroupingResult& found) const {
   if (!found.target_from_source || found.runner_up.empty()) return found;
-  std::vector<ScoredPose> poses = {{*found.target_from_source, 0}};
-  poses.insert(poses.end(), found.runner_up.begin(), found.runner_up.end());
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    RigidTransform& pose = poses[i].target_from_source;
-    if (const auto refined = refine_rigid(matches, agreeing_with(matches, pose), {}, pose).target_from_source)
-      pose = *refined;
-    poses[i].score = coverage_(pose, kReachPr * matches.resolution);
-    if (poses[i].score > poses[best].score) best = i;
+  std::vector<RigidTransform> starts = {*found.target_from_source};
+  for (const ScoredPose& pose : found.runner_up) starts.push_back(pose.target_from_source);
+  ScoredPose best;
+  bool is_own = true;
+  const auto consider = [&](const RefinedPose& refined, const RigidTransform& start, bool is_of_selection) {
+    const RigidTransform pose = refined.target_from_source.value_or(start);
+    const double score = coverage_(pose, kReachPr * matches.resolution);
+    if (score > best.score) best = {pose, score}, is_own = is_of_selection;
+  };
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    consider(refine_rigid(matches, agreeing_with(matches, starts[i]), {}, starts[i]), starts[i], i == 0);
+    consider(refine_over_all(matches, starts[i]), starts[i], false);
   }
   GroupingResult chosen = found;
-  if (best == 0) return chosen;
-  chosen.selected = agreeing_with(matches, poses[best].target_from_source);
+  if (is_own) return chosen;
+  chosen.selected = agreeing_with(matches, best.target_from_source);
   if (chosen.selected.size() < kFewestRows) return found;
-  chosen.target_from_source = poses[best].target_from_source;
+  chosen.target_from_source = best.target_from_source;
   return chosen;
 }
 

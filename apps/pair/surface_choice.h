@@ -19,10 +19,10 @@ class SurfaceChoice {
  public:
   SurfaceChoice(const Mesh& source, const Mesh& target, const ParallelFor& parallel = one_by_one);
 
-  /// The grouper's own pose and its runners-up are each refined over the rows within 5 pr (over all rows,
-  /// weak poses would slide to the strongest). If the one under which the
-  /// surfaces cover each other best within 4 pr is not the grouper's own, it replaces the pose, and the rows within 5 pr of it
-  /// replace the selection. Without runners-up the answer stays as it is.
+  /// The grouper's own pose and its runners-up are each refined twice: over the rows within 5 pr, and over all rows, where a
+  /// weak pose slides to a stronger one near by. If the pose under which the surfaces cover each other best within 4 pr is
+  /// not the grouper's own over its rows, it replaces that, and the rows within 5 pr of it replace the selection. Without
+  /// runners-up the answer stays as it is.
   GroupingResult operator()(const CorrespondenceSet& matches, const GroupingResult& found) const;
 
  private:
