@@ -29,11 +29,12 @@ class Arrays(unittest.TestCase):
         self.assertNotIn("\n", message)
 
     def test_types_and_shapes_of_results(self):
-        found = corral.group(self.matches, method="st")
+        found = corral.group(self.matches, method="si")
         self.assertEqual(found.selected.dtype, np.int64)
         self.assertTrue((np.diff(found.selected) > 0).all())
         self.assertEqual((found.scores.dtype, found.scores.shape), (np.float64, (300,)))
         self.assertIsNone(found.pose)
+        self.assertIsNone(corral.group(self.matches, method="gc").scores)
         self.assertGreater(found.seconds, 0)
         pose = corral.group(self.matches, method="ransac").pose
         self.assertEqual((pose.dtype, pose.shape), (np.float64, (4, 4)))

@@ -84,6 +84,8 @@ class Groupers(unittest.TestCase):
     def test_what_a_score_refuses(self):
         stretched, moved = np.diag([2.0, 2, 2, 1]), self.truth.copy()
         moved[3, 0] = 1
+        undefined = self.truth.copy()
+        undefined[0, 3] = np.nan
         for words, changes in (
             (["selected", "bool", "flatnonzero"], {"selected": np.ones(400, bool)}),
             (["selected", "float64"], {"selected": [0.0, 1.0]}),
@@ -92,7 +94,7 @@ class Groupers(unittest.TestCase):
             (["truth", "(3, 3)"], {"truth": np.eye(3)}),
             (["truth", "rigid"], {"truth": stretched}),
             (["truth", "last row"], {"truth": moved}),
-            (["pose", "rigid"], {"pose": np.full((4, 4), np.nan) * 0 + stretched}),
+            (["pose", "rigid"], {"pose": undefined}),
             (["threshold"], {"threshold_pr": np.nan}),
         ):
             with self.assertRaises(corral.InvalidInput) as caught:

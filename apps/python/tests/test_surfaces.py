@@ -49,11 +49,9 @@ class Surfaces(unittest.TestCase):
         self.assertEqual(corral.match(self.source, self.target, resolution=0.5).resolution, 0.5)
         for word, changes in (("detector", {"detector": "eyes"}), ("matcher", {"matcher": "guess"}),
                               ("sensor", {"sensor": [1, 2]}), ("radius", {"options": {"harris": {"radius": 4}}}),
-                              ("iss", {"options": {"iss": {}, "fpfh": {"x": 1}}} ), ("source.vertices", {"source": [[1, 2]]}),
+                              ("fpfh", {"options": {"fpfh": {"x": 1}}}), ("source.vertices", {"source": [[1, 2]]}),
                               ("source.triangles", {"source": corral.Mesh(np.eye(3), [[0, 1, -2]])}),
-                              ("triangle", {"source": corral.Mesh(np.eye(3), [[0, 1, 7]])})):
-            if word == "iss":
-                word = "fpfh"
+                              ("vertex 7", {"source": corral.Mesh(np.eye(3), [[0, 1, 7]])})):
             with self.assertRaises(corral.InvalidInput) as caught:
                 corral.match(**{"source": self.source, "target": self.target, **changes})
             self.assertIn(word, str(caught.exception))
