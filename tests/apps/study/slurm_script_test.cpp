@@ -72,12 +72,13 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
             "#SBATCH --signal=B:TERM@60\n"
             "/bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\" &\n"
             "shard=$!\n"
+            "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
             "trap 'kill -TERM \"$shard\"' TERM\n"
             "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
             "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 5 ] &&\n"
-            "  [ \"$(squeue -h -j \"$SLURM_JOB_ID\" -o %T)\" = RUNNING ]; then\n"
+            "  [ \"$(squeue -h -j \"$task\" -o %T)\" = RUNNING ]; then\n"
             "  echo \"ended with status $status: back into the queue\"\n"
-            "  scontrol requeue \"$SLURM_JOB_ID\"\n"
+            "  scontrol requeue \"$task\"\n"
             "fi\n"
             "exit \"$status\"\n");
   jobs.at_once = 20;
@@ -104,14 +105,15 @@ ScriptRun run_shard(const std::string& program, const std::string& variables, co
   SlurmJobs jobs;
   jobs.evaluate = {"sh", "-c", program};
   put_text(folder / "script", shards_script(jobs));
-  const int ended = std::system(("cd '" + folder.path() + "' && PATH=\"$PWD:$PATH\" SLURM_JOB_ID=17 " + variables +
-                                 " sh script > log 2>&1")
-                                    .c_str());
+  const int ended =
+      std::system(("cd '" + folder.path() + "' && PATH=\"$PWD:$PATH\" SLURM_ARRAY_JOB_ID=17 SLURM_ARRAY_TASK_ID=3 " +
+                   variables + " sh script > log 2>&1")
+                      .c_str());
   return {WEXITSTATUS(ended), testing::text_of(folder / "log")};
 }
 
 TEST(SlurmScript, AShardThatASignalEndedGoesBackIntoTheQueue) {
-  const std::string back = "requeue 17\n";
+  const std::string back = "requeue 17_3\n";
   const ScriptRun killed = run_shard("kill -KILL $$", "");
   EXPECT_EQ(killed.status, 128 + 9);
   EXPECT_THAT(killed.log, HasSubstr("status 137: back into the queue\n" + back));
@@ -130,7 +132,7 @@ TEST(SlurmScript, ASignalOfSlurmReachesTheProgramWhichEndsInOrder) {
   const ScriptRun ended =
       run_shard("trap 'sleep 0.3; echo in order; exit 143' TERM; kill -TERM $PPID; while :; do sleep 0.05; done", "");
   EXPECT_EQ(ended.status, 143);
-  EXPECT_THAT(ended.log, HasSubstr("in order\nended with status 143: back into the queue\nrequeue 17\n"));
+  EXPECT_THAT(ended.log, HasSubstr("in order\nended with status 143: back into the queue\nrequeue 17_3\n"));
 }
 
 TEST(SlurmScript, SubmitsFromTheFolderOfTheScriptsAndMergesBehindTheArray) {
