@@ -151,8 +151,8 @@ void add_submit(CLI::App& app, Action& action) {
   command->add_flag("--json", settings->json, "Limits, commands and numbers of the jobs as JSON");
   command->footer(
       "Writes shards.sbatch and merge.sbatch to the folder slurm of the study; what the jobs print goes there too. A\n"
-      "shard that is killed, preempted, lost with its node or at its limit of time goes back into the queue, five times at\n"
-      "most, and continues where it ended. The merge names what is unfinished: then the same call is submitted again.\n"
+      "shard that is killed, preempted, lost with its node or at its limit of time goes back into the queue,\n"
+      "and continues where it ended. The merge names what is unfinished: then the same call is submitted again.\n"
       "Other options of sbatch: its variables "
       "(SBATCH_QOS).\n"
       "Examples:\n  corral submit slurm noise density --data data -o runs/b3r --shards 50 --at-once 20\n"

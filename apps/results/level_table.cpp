@@ -159,30 +159,19 @@ double mean_over(std::size_t count, const Number& number) {
   return seen > 0 ? sum / seen : kAbsent;
 }
 
-/// The tables of a run, and for each the measures of kIfTried that no record has.
-struct Tabulated {
-  std::vector<ExperimentTable> tables;
-  std::vector<std::set<std::string>> untried;
-};
-
-Tabulated tabulate(const StudyFolder& run) {
+std::vector<ExperimentTable> tabulate(const StudyFolder& run) {
   Layout layout = lay_out(run);
   const auto level_of = [&](const Place& place) -> LevelTable& {
     return layout.tables[place.experiment].levels[place.level];
   };
-  const std::vector<const Measure*> of_pair = measures_with(kOfPair), if_tried = measures_with(kIfTried);
+  const std::vector<const Measure*> of_pair = measures_with(kOfPair);
   for (const Place& place : layout.places) fill_row(level_of(place), place.row, *place.record, of_pair);
-  std::set<std::string> never;
-  for (const Measure* measure : if_tried) never.insert(measure->name);
-  std::vector<std::set<std::string>> untried(layout.tables.size(), never);
   std::map<std::tuple<std::size_t, std::size_t, std::string>, MethodRecords> cells;
   for (const Place& place : layout.places) {
     if (place.record->status.state == MethodState::NotApplicable) continue;  // not tried
     MethodRecords& rows = cells[{place.experiment, place.level, place.record->method}];
     rows.resize(level_of(place).pairs.size());
     rows[place.row].push_back(place.record);
-    for (const Measure* measure : if_tried)
-      if (measure->of(*place.record)) untried[place.experiment].erase(measure->name);
   }
   for (auto& [key, records] : cells) {
     const auto& [experiment, level_index, method] = key;
@@ -190,17 +179,26 @@ Tabulated tabulate(const StudyFolder& run) {
     level.methods[method] = columns_of(level, records);
     MethodRecords().swap(records);
   }
-  return {std::move(layout.tables), std::move(untried)};
+  return std::move(layout.tables);
+}
+
+void add_tried_of(const StudyRecord& record, std::set<std::string>& tried) {
+  static const std::vector<const Measure*> if_tried = measures_with(kIfTried);
+  if (record.level.empty() || record.status.state == MethodState::NotApplicable) return;
+  for (const Measure* measure : if_tried)
+    if (measure->of(record)) tried.insert(measure->name);
 }
 
 /// Measures that an experiment did not take have no numbers, for failed groupers either.
-void leave_out(const std::set<std::string>& untried, ExperimentTable& table) {
-  for (LevelTable& level : table.levels)
-    for (auto& [method, columns] : level.methods)
-      for (const std::string& name : untried) {
-        RowNumbers& column = columns.numbers.at(name);
+void leave_out_untried(const std::set<std::string>& tried, ExperimentTable& table) {
+  for (const Measure* measure : measures_with(kIfTried)) {
+    if (tried.count(measure->name) > 0) continue;
+    for (LevelTable& level : table.levels)
+      for (auto& [method, columns] : level.methods) {
+        RowNumbers& column = columns.numbers.at(measure->name);
         std::fill(column.begin(), column.end(), kAbsent);
       }
+  }
 }
 
 template <class Value>
@@ -242,29 +240,28 @@ const RowNumbers* LevelTable::column(const Measure& measure, const std::string& 
 }
 
 std::vector<ExperimentTable> experiment_tables(const StudyFolder& run) {
-  Tabulated whole = tabulate(run);
-  for (std::size_t i = 0; i < whole.tables.size(); ++i) leave_out(whole.untried[i], whole.tables[i]);
-  return std::move(whole.tables);
+  std::vector<ExperimentTable> tables = tabulate(run);
+  std::map<std::string, std::set<std::string>> tried;  // by experiment
+  for (const StudyRecord& record : run.records) add_tried_of(record, tried[record.experiment]);
+  for (ExperimentTable& table : tables) leave_out_untried(tried[table.info.name], table);
+  return tables;
 }
 
-TableBuilder::TableBuilder(ExperimentInfo info) {
-  Tabulated empty = tabulate({"", {std::move(info)}, {}, {}});
-  table_ = std::move(empty.tables.front());
-  untried_ = std::move(empty.untried.front());
+void add_tried(const std::vector<StudyRecord>& records, std::set<std::string>& tried) {
+  for (const StudyRecord& record : records) add_tried_of(record, tried);
 }
+
+TableBuilder::TableBuilder(ExperimentInfo info, std::set<std::string> tried)
+    : table_(std::move(tabulate({"", {std::move(info)}, {}, {}}).front())), tried_(std::move(tried)) {}
 
 void TableBuilder::add(std::vector<StudyRecord> records) {
-  Tabulated part = tabulate({"", {table_.info}, {}, std::move(records)});
+  ExperimentTable part = std::move(tabulate({"", {table_.info}, {}, std::move(records)}).front());
   for (std::size_t level = 0; level < table_.levels.size(); ++level)
-    append(std::move(part.tables.front().levels[level]), table_.levels[level]);
-  std::set<std::string> untried;
-  for (const std::string& name : untried_)
-    if (part.untried.front().count(name) > 0) untried.insert(name);
-  untried_ = std::move(untried);
+    append(std::move(part.levels[level]), table_.levels[level]);
 }
 
 ExperimentTable TableBuilder::table() && {
-  leave_out(untried_, table_);
+  leave_out_untried(tried_, table_);
   return std::move(table_);
 }
 

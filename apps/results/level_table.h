@@ -48,17 +48,21 @@ struct ExperimentTable {
 /// Throws    IoError if a record names an experiment or level that the manifest lacks.
 std::vector<ExperimentTable> experiment_tables(const StudyFolder& run);
 
-/// The table of an experiment from its records in parts, which need not be in memory together. All rows of a pair's table (its
-/// groupers and their repeats) are in one part; in any other way the parts give what the whole gives.
+/// Adds the names of the measures of kIfTried that some of these records have.
+void add_tried(const std::vector<StudyRecord>& records, std::set<std::string>& tried);
+
+/// The table of an experiment, or of some of its levels, from its records in parts, which need not be in memory together. All
+/// rows of a pair's table (its groupers and their repeats) are in one part; in any other way the parts give what the whole
+/// gives. `tried`: by all records of the experiment.
 class TableBuilder {
  public:
-  explicit TableBuilder(ExperimentInfo info);
-  void add(std::vector<StudyRecord> records);
+  TableBuilder(ExperimentInfo info, std::set<std::string> tried);
+  void add(std::vector<StudyRecord> records);  ///< throws IoError as experiment_tables
   ExperimentTable table() &&;
 
  private:
   ExperimentTable table_;
-  std::set<std::string> untried_;  ///< measures
+  std::set<std::string> tried_;
 };
 
 /// Unweighted mean over the rows (macro), or over rows that were drawn; NaN where there is no number.

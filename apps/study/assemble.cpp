@@ -126,13 +126,14 @@ std::vector<PlacedSample> placed_samples(const WorkList& list, const std::vector
 }  // namespace
 
 void assemble_records(const WorkList& list, const std::vector<UnitResult>& results, int experiment,
-                      const std::function<void(std::vector<StudyRecord>)>& consume) {
+                      const std::function<void(int level, std::vector<StudyRecord>)>& consume) {
   const std::vector<PlacedSample> placed = placed_samples(list, results, experiment);
-  for (std::size_t begin = 0; begin < placed.size(); begin += kSamplesAtOnce) {
+  for (std::size_t begin = 0, end = 0; begin < placed.size(); begin = end) {
+    const int level = placed[begin].level;
     std::vector<StudyRecord> records;
-    for (std::size_t i = begin; i < std::min(begin + kSamplesAtOnce, placed.size()); ++i)
-      add_rows(list, placed[i], results[static_cast<std::size_t>(placed[i].sample->unit)], records);
-    consume(std::move(records));
+    for (; end < placed.size() && end - begin < kSamplesAtOnce && placed[end].level == level; ++end)
+      add_rows(list, placed[end], results[static_cast<std::size_t>(placed[end].sample->unit)], records);
+    consume(level, std::move(records));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "apps/pair/truth_fit.h"
@@ -38,20 +39,59 @@ void add_warnings(const WorkList& list, const std::vector<std::size_t>& units, c
   }
 }
 
+/// Averages the records of an experiment level by level, as they come: the numbers of one level are in memory at a time.
+class LevelSummary {
+ public:
+  LevelSummary(const ExperimentInfo& info, std::set<std::string> tried) : info_(info), tried_(std::move(tried)) {
+    begin();
+  }
+  void add(int level, std::vector<StudyRecord> records) {
+    while (level_ < level) end(), begin();
+    if (level >= 0) table_->add(std::move(records));
+  }
+  std::vector<SummaryRow> rows() && {
+    while (static_cast<std::size_t>(level_) < info_.levels.size()) end(), begin();
+    return std::move(rows_);
+  }
+
+ private:
+  void begin() {
+    if (static_cast<std::size_t>(level_) == info_.levels.size()) return;
+    ExperimentInfo info = info_;
+    info.levels = {info_.levels[static_cast<std::size_t>(level_)]};
+    table_.emplace(std::move(info), tried_);
+  }
+  void end() {
+    std::vector<ExperimentTable> tables;
+    tables.push_back(std::move(*table_).table());
+    append(summarize(tables), rows_);
+    ++level_;
+  }
+
+  const ExperimentInfo& info_;
+  const std::set<std::string> tried_;
+  int level_ = 0;
+  std::optional<TableBuilder> table_;
+  std::vector<SummaryRow> rows_;
+};
+
 /// Writes the records, and averages and counts them, one experiment after the other.
 void write_records(const WorkList& list, const std::vector<UnitResult>& results, StagedFiles& files,
                    StudyOutcome& outcome) {
   files.write(records_header());
-  for (std::size_t experiment = 0; experiment < list.experiments.size(); ++experiment) {
-    const ExperimentInfo& info = list.experiments[experiment].info;
-    TableBuilder table(info);
+  for (std::size_t number = 0; number < list.experiments.size(); ++number) {
+    const ExperimentInfo& info = list.experiments[number].info;
+    const int experiment = static_cast<int>(number);
+    std::set<std::string> tried;
+    assemble_records(list, results, experiment, [&](int, const auto& records) { add_tried(records, tried); });
     LossCounter losses({info});
-    assemble_records(list, results, static_cast<int>(experiment), [&](std::vector<StudyRecord> records) {
+    LevelSummary summary(info, std::move(tried));
+    assemble_records(list, results, experiment, [&](int level, std::vector<StudyRecord> records) {
       files.write(records_text(records));
       losses.add(records);
-      table.add(std::move(records));
+      summary.add(level, std::move(records));
     });
-    append(summarize({std::move(table).table()}), outcome.summary);
+    append(std::move(summary).rows(), outcome.summary);
     append(losses.rows(), outcome.losses);
   }
 }

@@ -27,13 +27,16 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
 
 /// What follows the start of a shard. Slurm itself requeues what is lost with a node, but not what a signal ended. A wait that
 /// a signal interrupts returns before the shard has ended. The state is no longer RUNNING where a user cancels the job. The
-/// task goes by its array, as the last one of an array has the number of the whole for its job.
+/// task goes by its array, as the last one of an array has the number of the whole for its job. 143 is an end in order, as before
+/// the limit of time, with more pairs done each time; other signals may come every time.
 constexpr char kWatch[] =
     "shard=$!\n"
     "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
     "trap 'kill -TERM \"$shard\"' TERM\n"
     "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
-    "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 5 ] &&\n"
+    "most=5\n"
+    "if [ \"$status\" = 143 ]; then most=100; fi\n"
+    "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt \"$most\" ] &&\n"
     "  [ \"$(squeue -h -j \"$task\" -o %T)\" = RUNNING ]; then\n"
     "  echo \"ended with status $status: back into the queue\"\n"
     "  scontrol requeue \"$task\"\n"

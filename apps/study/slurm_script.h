@@ -26,8 +26,8 @@ std::string time_limit(const std::vector<ShardPlan>& plan, int processors);
 std::string memory_limit(const std::vector<ShardPlan>& plan, int processors);
 
 /// The batch script of the array, whose element i is shard i: shards.sbatch. It passes the signal of Slurm on to the program,
-/// and an element that a signal ended (its limit of time, lack of memory) puts itself back into the queue, until it has been
-/// started five times more; Slurm does that for one that is lost with its node. Each continues where it ended.
+/// and an element that a signal ended puts itself back into the queue: before its limit of time up to 100 times, else (lack of
+/// memory) up to five; Slurm does that for one that is lost with its node. Each continues where it ended.
 std::string shards_script(const SlurmJobs& jobs);
 
 /// The batch script of the merge: merge.sbatch.

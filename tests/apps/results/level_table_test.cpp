@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "apps/results/summary.h"
@@ -220,11 +221,14 @@ TEST(TableBuilder, PartsGiveWhatTheWholeGives) {
   ASSERT_FALSE(whole.empty());
   for (std::size_t experiment = 0; experiment < whole.size(); ++experiment)
     for (const std::size_t least : {1u, 40u}) {
-      TableBuilder builder(run.experiments[experiment]);
-      std::vector<StudyRecord> part;
       const auto is_of_it = [&](const StudyRecord& record) {
         return record.experiment == run.experiments[experiment].name;
       };
+      std::set<std::string> tried;
+      for (const StudyRecord& record : run.records)
+        if (is_of_it(record)) add_tried({record}, tried);
+      TableBuilder builder(run.experiments[experiment], tried);
+      std::vector<StudyRecord> part;
       for (const StudyRecord& record : run.records) {
         if (!is_of_it(record)) continue;
         if (part.size() >= least && !(part.back().pair == record.pair && part.back().level == record.level))

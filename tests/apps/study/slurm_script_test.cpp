@@ -75,7 +75,9 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
             "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
             "trap 'kill -TERM \"$shard\"' TERM\n"
             "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
-            "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt 5 ] &&\n"
+            "most=5\n"
+            "if [ \"$status\" = 143 ]; then most=100; fi\n"
+            "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt \"$most\" ] &&\n"
             "  [ \"$(squeue -h -j \"$task\" -o %T)\" = RUNNING ]; then\n"
             "  echo \"ended with status $status: back into the queue\"\n"
             "  scontrol requeue \"$task\"\n"
@@ -120,6 +122,8 @@ TEST(SlurmScript, AShardThatASignalEndedGoesBackIntoTheQueue) {
   EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=4").log, HasSubstr(back));
   EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=5").log, Not(HasSubstr(back))) << "not for ever";
   EXPECT_THAT(run_shard("kill -KILL $$", "", "COMPLETING").log, Not(HasSubstr(back))) << "a user has cancelled it";
+  EXPECT_THAT(run_shard("exit 143", "SLURM_RESTART_COUNT=99").log, HasSubstr(back)) << "at its limit of time";
+  EXPECT_THAT(run_shard("exit 143", "SLURM_RESTART_COUNT=100").log, Not(HasSubstr(back)));
   for (const int status : {0, 3, 4}) {
     const ScriptRun ended = run_shard("exit " + std::to_string(status), "");
     EXPECT_EQ(ended.status, status);
