@@ -75,6 +75,7 @@ TEST(Mac, LargerTablesAreThoseOfTheReference) {
         const GroupingResult result = group_by_mac(matches, options);
         ASSERT_EQ(note(result, "halvings"), -1);
         testing::expect_reference(result, reference::mac(matches, options));
+        EXPECT_EQ(note(result, "hypotheses"), reference::mac_hypotheses(matches, options));
       }
 }
 

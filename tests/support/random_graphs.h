@@ -54,11 +54,16 @@ inline bool is_maximal(const BitGraph& graph, const Indices& clique) {
 /// Every set of nodes that is a clique and that no node extends; for graphs of few nodes. In the order of lists.
 inline std::vector<Indices> maximal_cliques_by_trial(const BitGraph& graph) {
   std::vector<Indices> cliques;
-  for (unsigned set = 1; set < 1u << graph.size(); ++set) {
+  for (BitGraph::Word set = 1; set < BitGraph::Word{1} << graph.size(); ++set) {
     Indices nodes;
-    for (int node = 0; node < graph.size(); ++node)
-      if (set >> node & 1) nodes.push_back(node);
-    if (is_clique(graph, nodes) && is_maximal(graph, nodes)) cliques.push_back(nodes);
+    bool is_maximal_clique = true;  // a node belongs to it if and only if all others of it are its neighbours
+    for (int node = 0; node < graph.size(); ++node) {
+      const BitGraph::Word itself = BitGraph::Word{1} << node;
+      if ((set & itself) != 0) nodes.push_back(node);
+      is_maximal_clique =
+          is_maximal_clique && ((set & itself) != 0) == ((set & ~itself & ~*graph.neighbors(node)) == 0);
+    }
+    if (is_maximal_clique) cliques.push_back(nodes);
   }
   std::sort(cliques.begin(), cliques.end());
   return cliques;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -74,27 +75,24 @@ std::vector<int> thinned(const Eigen::MatrixXd& w) {
   return nodes;
 }
 
-/// Every maximal clique, from lists of candidates and of nodes that were tried before.
-void list_cliques(const Eigen::MatrixXd& w, const Indices& clique, Indices candidates, Indices tried,
+using Set = std::bitset<512>;  // rows of the tables that it is asked for
+
+/// Every maximal clique, from the candidates for it and the nodes that were tried before.
+void list_cliques(const std::vector<Set>& neighbors, const Indices& clique, Set candidates, Set tried,
                   const std::function<void(const Indices&)>& visit) {
-  if (candidates.empty() && tried.empty()) return visit(clique);
-  if (candidates.empty()) return;
-  const auto count = [&](int node) {
-    return std::count_if(candidates.begin(), candidates.end(), [&](int other) { return w(node, other) > 0; });
-  };
-  Indices both = candidates;
-  both.insert(both.end(), tried.begin(), tried.end());
-  const int pivot = *std::max_element(both.begin(), both.end(), [&](int a, int b) { return count(a) < count(b); });
-  for (const int node : Indices(candidates)) {
-    if (w(pivot, node) > 0) continue;
-    Indices longer = clique, fewer, fewer_tried;
-    longer.push_back(node);
-    std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(fewer),
-                 [&](int k) { return w(node, k) > 0; });
-    std::copy_if(tried.begin(), tried.end(), std::back_inserter(fewer_tried), [&](int k) { return w(node, k) > 0; });
-    list_cliques(w, longer, fewer, fewer_tried, visit);
-    candidates.erase(std::find(candidates.begin(), candidates.end(), node));
-    tried.push_back(node);
+  if (candidates.none() && tried.none()) return visit(clique);
+  Set kept;  // of the node of most neighbours among the candidates
+  std::size_t most = 0;
+  for (std::size_t node = 0; node < neighbors.size(); ++node) {
+    const std::size_t count = (candidates & neighbors[node]).count();
+    if ((candidates | tried)[node] && count > most) most = count, kept = neighbors[node];
+  }
+  for (std::size_t node = 0; node < neighbors.size(); ++node) {
+    if (!candidates[node] || kept[node]) continue;
+    Indices longer = clique;
+    longer.push_back(static_cast<int>(node));
+    list_cliques(neighbors, longer, candidates & neighbors[node], tried & neighbors[node], visit);
+    candidates[node] = false, tried[node] = true;
   }
 }
 
@@ -110,7 +108,13 @@ struct Weighed {
 
 std::set<Weighed> heaviest_cliques(const Eigen::MatrixXd& w, int per_node) {
   std::vector<std::set<Weighed>> best(static_cast<std::size_t>(w.rows()));
-  list_cliques(w, {}, thinned(w), {}, [&](Indices clique) {
+  std::vector<Set> neighbors(best.size());
+  for (int a = 0; a < w.rows(); ++a)
+    for (int b = 0; b < w.rows(); ++b)
+      neighbors[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] = w(a, b) > 0;
+  Set nodes;
+  for (const int node : thinned(w)) nodes[static_cast<std::size_t>(node)] = true;
+  list_cliques(neighbors, {}, nodes, {}, [&](Indices clique) {
     if (clique.size() < 3) return;
     std::sort(clique.begin(), clique.end());
     double weight = 0;
@@ -138,6 +142,10 @@ Selection mac(const CorrespondenceSet& matches, const MacOptions& options) {
         poses.push_back(*pose);
     return rows_of_best_pose(sorted, poses, options.score, options.tolerance_pr, options.refit_rounds);
   });
+}
+
+int mac_hypotheses(const CorrespondenceSet& matches, const MacOptions& options) {
+  return static_cast<int>(heaviest_cliques(weights_of(matches, options.gate), options.cliques_per_node).size());
 }
 
 }  // namespace corral::reference

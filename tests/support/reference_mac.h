@@ -9,4 +9,7 @@ namespace corral::reference {
 /// Without the bound on the steps; not for Fs.
 Selection mac(const CorrespondenceSet& matches, const MacOptions& options);
 
+/// How many cliques the rows name.
+int mac_hypotheses(const CorrespondenceSet& matches, const MacOptions& options);
+
 }  // namespace corral::reference
