@@ -19,10 +19,12 @@ namespace fs = std::filesystem;
 
 Json to_json(const Experiment& experiment) {
   const ExperimentInfo& info = experiment.info;
-  Json levels = Json::array(), foreign = Json::array(), filters = Json::object(), options = Json::object();
+  Json levels = Json::array(), foreign = Json::array(), filters = Json::object();
+  Json exceptions = Json::object(), options = Json::object();
   for (const StudyLevel& level : info.levels)
     levels.push_back({{"label", level.label}, {"low", level.low}, {"high", level.high}});
-  for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.accepted;
+  for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.values;
+  for (const AttributeFilter& filter : experiment.exceptions) exceptions[filter.attribute] = filter.values;
   for (const auto& [name, overrides] : experiment.options)
     if (!look_up(groupers(), name)) options[name] = overrides;
   for (const ForeignMethod& method : experiment.foreign)
@@ -51,6 +53,7 @@ Json to_json(const Experiment& experiment) {
           {"threshold_pr", info.threshold_pr},
           {"least_true_matches", info.least_true_matches},
           {"filter", filters},
+          {"except", exceptions},
           {"matching", corral::to_json(experiment.matching)},
           {"varied", experiment.varied},
           {"varied_values", experiment.varied_values},

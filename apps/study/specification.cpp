@@ -19,6 +19,7 @@
 namespace corral {
 
 const EmbeddedFiles& embedded_experiments();
+const EmbeddedFiles& embedded_presets();
 
 namespace {
 
@@ -123,9 +124,9 @@ std::vector<StudyLevel> read_levels(const TomlTable& table, const Experiment& ex
   return levels;
 }
 
-std::vector<AttributeFilter> read_filters(const TomlTable& table) {
+std::vector<AttributeFilter> read_filters(const TomlTable& table, const std::string& key) {
   std::vector<AttributeFilter> filters;
-  if (const auto filter = table.table("filter"))
+  if (const auto filter = table.table(key))
     for (const std::string& attribute : filter->keys()) filters.push_back({attribute, filter->texts(attribute)});
   return filters;
 }
@@ -161,6 +162,34 @@ void read_options(const TomlTable& root, Experiment& experiment) {
       else if (const auto value = options.scalar_text(option))
         experiment.options[name][option] = *value;
   }
+}
+
+/// The names of built-in files, without ".toml".
+std::vector<std::string> names_of(const EmbeddedFiles& files) {
+  std::vector<std::string> names;
+  for (const auto& [file, text] : files) names.push_back(std::filesystem::path(file).stem().string());
+  return names;
+}
+
+/// The file of a preset; "paper" has none: every option is at its default, the values of the paper's Table 1.
+std::optional<TomlTable> read_preset(const TomlTable& root) {
+  const std::string name = root.text("preset").value_or("paper");
+  if (name == "paper") return std::nullopt;
+  const auto found = embedded_presets().find(name + ".toml");
+  std::vector<std::string> known = names_of(embedded_presets());
+  known.push_back("paper");
+  if (found == embedded_presets().end()) fail_unknown(root, "preset", name, known);
+  TomlTable preset = TomlTable::parse("the preset " + name, found->second);
+  preset.only({"options"});
+  return preset;
+}
+
+/// Options of a preset, where the experiment uses what they belong to and does not give them itself.
+void add_preset(const TomlTable& preset, Experiment& experiment) {
+  Experiment given;
+  read_options(preset, given);
+  for (const auto& [name, options] : given.options)
+    if (is_in_use(experiment, name)) experiment.options[name].insert(options.begin(), options.end());
 }
 
 /// [vary.harris] radius_pr = [..]
@@ -221,9 +250,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   const TomlTable table = TomlTable::parse(path, text);
   table.only({"name",    "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
               "bins",    "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
-              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select"});
-  if (table.text("preset").value_or("paper") != "paper")
-    table.fail("preset", "expected \"paper\": every option at its default, the values of the paper's Table 1");
+              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select",       "except"});
   Experiment experiment;
   ExperimentInfo& info = experiment.info;
   info.name = required_text(table, "name");
@@ -252,9 +279,11 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   experiment.dense = table.flag("dense").value_or(false);
   experiment.all_rows = is_second(table, "rows", kRows);
   experiment.by_surface = is_second(table, "select", kSelect);
-  experiment.filters = read_filters(table);
+  experiment.filters = read_filters(table, "filter");
+  experiment.exceptions = read_filters(table, "except");
   read_matching(table, experiment);
   read_options(table, experiment);
+  if (const auto preset = read_preset(table)) add_preset(*preset, experiment);
   read_varied(table, experiment);
   check_experiment(table, experiment);
   return experiment;
@@ -277,10 +306,6 @@ std::string experiment_text(const std::string& name_or_path) {
                                      : ", did you mean " + corral::quoted(nearest) + "?"));
 }
 
-std::vector<std::string> built_in_experiments() {
-  std::vector<std::string> names;
-  for (const auto& [file, text] : embedded_experiments()) names.push_back(std::filesystem::path(file).stem().string());
-  return names;
-}
+std::vector<std::string> built_in_experiments() { return names_of(embedded_experiments()); }
 
 }  // namespace corral

@@ -13,10 +13,10 @@
 
 namespace corral {
 
-/// Only pairs whose attribute is one of these are used; "" is an empty cell, numbers are compared as numbers.
+/// The pairs whose attribute, or name ("pair"), is one of these values; "" is an empty cell, numbers are compared as numbers.
 struct AttributeFilter {
   std::string attribute;
-  std::vector<std::string> accepted;
+  std::vector<std::string> values;
 };
 
 /// A method of another program, whose answers are in files: an entry of methods.toml. Patterns of files, with {pair} and columns
@@ -46,6 +46,7 @@ struct Experiment {
   ExperimentInfo info;
   Sweep sweep = Sweep::Column;
   std::vector<AttributeFilter> filters;
+  std::vector<AttributeFilter> exceptions;  ///< pairs whose attribute is one of these are left out
   MatchSettings matching;                 ///< its resolution holds if `resolution` is given; without options
   std::optional<std::string> resolution;  ///< else that of the data set
   OptionsByName options;                  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)

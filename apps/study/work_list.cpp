@@ -49,13 +49,19 @@ Dataset find_dataset(const std::string& data_folder, const std::string& name, co
                     (list.empty() ? "expected a folder with dataset.toml in it" : "it has " + list));
 }
 
-bool is_accepted(const Dataset& dataset, const DatasetPair& pair, const AttributeFilter& filter) {
-  const std::string cell = attribute_text(dataset, pair, filter.attribute);
+bool matches_filter(const Dataset& dataset, const DatasetPair& pair, const AttributeFilter& filter) {
+  const std::string cell = filter.attribute == "pair" ? pair.name : attribute_text(dataset, pair, filter.attribute);
   const std::optional<double> number = parse_double(cell);
-  return std::any_of(filter.accepted.begin(), filter.accepted.end(), [&](const std::string& accepted) {
-    const std::optional<double> wanted = parse_double(accepted);
-    return cell == accepted || (number && wanted && *number == *wanted);
+  return std::any_of(filter.values.begin(), filter.values.end(), [&](const std::string& value) {
+    const std::optional<double> wanted = parse_double(value);
+    return cell == value || (number && wanted && *number == *wanted);
   });
+}
+
+bool is_used(const Experiment& experiment, const Dataset& dataset, const DatasetPair& pair) {
+  const auto matches = [&](const AttributeFilter& filter) { return matches_filter(dataset, pair, filter); };
+  return std::all_of(experiment.filters.begin(), experiment.filters.end(), matches) &&
+         std::none_of(experiment.exceptions.begin(), experiment.exceptions.end(), matches);
 }
 
 bool draws(const std::string& method) {
@@ -138,13 +144,8 @@ class Collector {
     experiment.matching.threads = 1;
     check_columns(experiment, dataset);
     const std::size_t before = list_.samples.size();
-    for (std::size_t i = 0; i < dataset.pairs.size(); ++i) {
-      const auto accepts = [&](const AttributeFilter& filter) {
-        return is_accepted(dataset, dataset.pairs[i], filter);
-      };
-      if (std::all_of(experiment.filters.begin(), experiment.filters.end(), accepts))
-        add_pair(index, dataset, static_cast<int>(i));
-    }
+    for (std::size_t i = 0; i < dataset.pairs.size(); ++i)
+      if (is_used(experiment, dataset, dataset.pairs[i])) add_pair(index, dataset, static_cast<int>(i));
     if (list_.samples.size() == before)
       throw IoError(dataset.path("pairs.csv"), "",
                     "no pair is at any level of the experiment " + experiment.info.name + ", expected some with " +

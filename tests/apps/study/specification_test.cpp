@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "apps/study/experiment_options.h"
 #include "grouping/registry.h"
 #include "tests/support/experiment_text.h"
@@ -85,8 +87,11 @@ TEST(Specification, LabelsBinsAsIntervals) {
 TEST(Specification, TheProgramCarriesThePapersExperiments) {
   EXPECT_THAT(built_in_experiments(),
               ElementsAre("clutter", "cranfield-fpfh", "cranfield-shot", "cranfield", "density", "detectors-fpfh",
-                          "detectors", "inlier-ratio", "matches", "noise", "occlusion", "overlap", "size", "threshold",
-                          "time", "tuning-consistency", "tuning-spectral"));
+                          "detectors", "extended-clutter", "extended-inlier-ratio", "extended-noise", "extended-overlap",
+                          "extended-size", "extended-time", "inlier-ratio", "matches", "noise", "occlusion", "overlap",
+                          "peers-heaps", "peers-views", "size", "threshold", "time", "tuned-clutter",
+                          "tuned-inlier-ratio", "tuned-noise", "tuned-overlap", "tuning-consistency",
+                          "tuning-spectral"));
   std::string figures;
   for (const std::string& name : built_in_experiments()) {
     const Experiment experiment = read_experiment(name);
@@ -104,6 +109,44 @@ TEST(Specification, TheProgramCarriesThePapersExperiments) {
   EXPECT_EQ(read_experiment("matches").varied, "harris.radius_pr");
   EXPECT_EQ(read_experiment("matches").varied_values.size(), 9u);
   EXPECT_THAT(io_error_of([] { read_experiment("nose"); }), HasSubstr("did you mean 'noise'?"));
+}
+
+TEST(Specification, APresetGivesTheOptionsOfWhatIsInUse) {
+  const auto options_of = [](const Experiment& experiment, const std::string& name) {
+    return options_at(experiment, name, experiment.info.levels[0]);
+  };
+  const std::string tuned = testing::replaced(kGood, "levels", "preset = \"tuned\"\nlevels");
+  const Experiment experiment = parse_experiment("x.toml", tuned);
+  EXPECT_EQ(options_of(experiment, "st"), (OptionOverrides{{"similarity", "0.9"}}));
+  EXPECT_EQ(options_of(experiment, "gc").at("tolerance_pr"), "2");
+  EXPECT_EQ(experiment.options.count("mac"), 0u) << "takes no part";
+  const Experiment own = parse_experiment("x.toml", testing::replaced(tuned, "tolerance_pr = 2", "tolerance_pr = 7"));
+  EXPECT_EQ(options_of(own, "gc").at("tolerance_pr"), "7") << "what the experiment says comes last";
+  EXPECT_THAT(error_of(testing::replaced(tuned, "\"tuned\"", "\"tund\"")), HasSubstr("did you mean 'tuned'?"));
+  EXPECT_THAT(error_of(testing::replaced(tuned, "\"tuned\"", "\"mine\"")), HasSubstr("expected one of tuned, paper"));
+}
+
+// The files of paper/tuning are experiments, on the pairs that the experiments with tuned options leave out.
+TEST(Specification, NoPairServesForTuningAndForResults) {
+  const std::vector<std::string> models = {"armadillo", "bear"};
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CORRAL_SOURCE_DIR "/paper/tuning")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Experiment experiment = read_experiment(entry.path().string());
+    ASSERT_EQ(experiment.filters.size(), 1u) << entry.path();
+    EXPECT_EQ(experiment.filters[0].attribute, "model");
+    EXPECT_EQ(experiment.filters[0].values, models);
+    ++files;
+  }
+  EXPECT_EQ(files, 18);
+  for (const char* kind : {"extended", "tuned"})
+    for (const char* subject : {"overlap", "clutter", "noise"}) {
+      const Experiment experiment = read_experiment(std::string(kind) + "-" + subject);
+      EXPECT_EQ(experiment.info.methods, expand_groupers({"all"}));
+      ASSERT_EQ(experiment.exceptions.size(), 1u) << experiment.info.name;
+      EXPECT_EQ(experiment.exceptions[0].attribute, "model");
+      EXPECT_EQ(experiment.exceptions[0].values, models);
+    }
 }
 
 // preset = "paper" promises the values of Table 1: a default that drifts from them would make it a lie.

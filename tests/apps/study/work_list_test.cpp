@@ -72,6 +72,21 @@ TEST_F(WorkListTest, FiltersAndLevelsChooseThePairs) {
   EXPECT_FALSE(found.units[0].shares_target);
 }
 
+TEST_F(WorkListTest, ExceptionsLeavePairsOut) {
+  const auto pairs_with = [&](const std::string& tables) {
+    const std::string text =
+        "name = \"mine\"\ndataset = \"b3r\"\nattribute = \"noise_pr\"\nlevels = [0.1, 0.3]\n" + tables;
+    return pairs_of(make_work_list({parse_experiment("x.toml", text)}, folder_.path()));
+  };
+  EXPECT_THAT(pairs_with(""), ElementsAre("b1", "a1", "a2", "a3"));
+  EXPECT_THAT(pairs_with("[except]\ndensity = [\"\", \"1.0\"]\n"), ElementsAre("a3"));
+  EXPECT_THAT(pairs_with("[except]\npair = [\"a1\", \"a3\"]\n"), ElementsAre("b1", "a2"));
+  EXPECT_THAT(pairs_with("[except]\npair = [\"a1\"]\nnoise_pr = [\"0.3\"]\n"), ElementsAre("b1", "a3"))
+      << "one reason is enough";
+  EXPECT_THAT(pairs_with("[filter]\npair = [\"a1\", \"b1\"]\n[except]\npair = [\"b1\"]\n"), ElementsAre("a1"));
+  EXPECT_THAT(pairs_with("[except]\nno_such_column = [\"1\"]\n"), ElementsAre("b1", "a1", "a2", "a3"));
+}
+
 TEST_F(WorkListTest, BinsAreHalfOpenAndTheLastIsClosed) {
   const WorkList found = list({"clutter"});
   ASSERT_EQ(found.samples.size(), 2u);   // 20 is in none
