@@ -6,7 +6,7 @@
 #include "apps/commands/commands.h"
 #include "apps/runtime/build_info.h"
 #include "apps/runtime/output.h"
-#include "io/toml_file.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "apps/runtime/text_table.h"
-#include "io/csv_file.h"
-#include "io/transform_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -6,7 +6,7 @@
 
 #include "apps/align/align_view_set.h"
 #include "apps/runtime/json.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 
 namespace corral {
 

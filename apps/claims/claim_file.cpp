@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "apps/runtime/embedded_files.h"
-#include "io/file.h"
-#include "io/line_reader.h"
-#include "io/toml_file.h"
+#include "io/disk/file.h"
+#include "io/text/line_reader.h"
+#include "io/text/toml_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

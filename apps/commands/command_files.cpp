@@ -7,7 +7,7 @@
 #include "apps/pair/read_surface.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/runtime/output.h"
-#include "io/transform_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {

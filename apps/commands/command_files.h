@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 
 // What several subcommands do with the files that they are told.
 namespace corral {

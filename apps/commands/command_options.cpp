@@ -9,8 +9,8 @@
 #include "apps/pair/option_names.h"
 #include "apps/runtime/memory.h"
 #include "apps/runtime/output.h"
-#include "io/toml_file.h"
-#include "io/transform_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -10,8 +10,8 @@
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
-#include "io/csv_file.h"
-#include "io/file.h"
+#include "io/disk/file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

@@ -7,9 +7,9 @@
 #include "apps/commands/command_options.h"
 #include "apps/picture/pair_picture.h"
 #include "apps/runtime/progress.h"
-#include "io/file.h"
-#include "io/group_file.h"
-#include "io/matches_file.h"
+#include "io/disk/file.h"
+#include "io/matches/group_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 

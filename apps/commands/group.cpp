@@ -7,9 +7,9 @@
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
-#include "io/file.h"
-#include "io/group_file.h"
-#include "io/matches_file.h"
+#include "io/disk/file.h"
+#include "io/matches/group_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/missing_column.h"
 
 namespace corral {

@@ -5,7 +5,7 @@
 #include "apps/commands/commands.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/runtime/output.h"
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"

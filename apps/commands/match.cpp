@@ -7,9 +7,9 @@
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
-#include "io/file.h"
-#include "io/matches_file.h"
-#include "io/number_table.h"
+#include "io/array/number_table.h"
+#include "io/disk/file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -14,8 +14,8 @@
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
 #include "apps/study/plan.h"
-#include "io/file.h"
-#include "io/matches_file.h"
+#include "io/disk/file.h"
+#include "io/matches/matches_file.h"
 
 namespace corral {
 namespace {

@@ -13,7 +13,7 @@
 #include "apps/study/plan.h"
 #include "apps/study/shard.h"
 #include "apps/study/study_journals.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 
 namespace corral {
 namespace {

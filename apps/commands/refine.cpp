@@ -8,10 +8,10 @@
 #include "apps/pair/report_pair.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
-#include "io/file.h"
-#include "io/group_file.h"
-#include "io/matches_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/matches/group_file.h"
+#include "io/matches/matches_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {

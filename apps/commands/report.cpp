@@ -17,7 +17,7 @@
 #include "apps/results/losses.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -10,7 +10,7 @@
 #include "apps/pair/truth_fit.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/text_table.h"
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 
 namespace corral {
 namespace {

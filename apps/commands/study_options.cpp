@@ -2,7 +2,7 @@
 #include "apps/commands/study_options.h"
 
 #include "apps/commands/command_options.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

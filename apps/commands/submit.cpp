@@ -10,7 +10,7 @@
 #include "apps/runtime/output.h"
 #include "apps/study/shard.h"
 #include "apps/study/slurm_script.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

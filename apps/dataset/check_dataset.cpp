@@ -13,7 +13,7 @@
 #include "apps/pair/table_truth_fit.h"
 #include "apps/pair/truth_fit.h"
 #include "apps/runtime/text_table.h"
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/runtime/progress.h"
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 #include "kernel/parallel.h"
 
 namespace corral {

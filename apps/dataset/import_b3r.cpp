@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "apps/dataset/retrieval_scenes.h"
-#include "io/file.h"
-#include "io/line_reader.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/line_reader.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/mesh/perturbation.h"

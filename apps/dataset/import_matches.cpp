@@ -6,8 +6,8 @@
 
 #include "apps/dataset/set_folder.h"
 #include "apps/runtime/text_table.h"
-#include "io/matches_file.h"
-#include "io/transform_file.h"
+#include "io/matches/matches_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

@@ -8,9 +8,9 @@
 #include <set>
 
 #include "apps/dataset/recognition_pairs.h"
-#include "io/file.h"
-#include "io/line_reader.h"
-#include "io/mesh_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/text/line_reader.h"
 #include "kernel/error.h"
 
 namespace corral {

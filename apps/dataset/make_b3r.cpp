@@ -4,7 +4,7 @@
 #include <set>
 
 #include "apps/dataset/retrieval_scenes.h"
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"

@@ -3,8 +3,8 @@
 
 #include "apps/dataset/challenge_table.h"
 #include "apps/dataset/set_folder.h"
-#include "io/matches_file.h"
-#include "io/transform_file.h"
+#include "io/matches/matches_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"

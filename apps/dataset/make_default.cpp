@@ -8,7 +8,7 @@
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/recognition_pairs.h"
 #include "apps/runtime/embedded_files.h"
-#include "io/toml_file.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 
 namespace corral {

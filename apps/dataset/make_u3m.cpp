@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "apps/dataset/set_part.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "apps/dataset/set_part.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"

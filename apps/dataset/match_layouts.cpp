@@ -8,10 +8,10 @@
 #include <set>
 
 #include "apps/dataset/set_folder.h"
-#include "io/fragment_poses.h"
-#include "io/mesh_file.h"
-#include "io/named_arrays.h"
-#include "io/scan_pairs.h"
+#include "io/matches/named_arrays.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pairs/fragment_poses.h"
+#include "io/pairs/scan_pairs.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

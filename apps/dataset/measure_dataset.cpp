@@ -6,7 +6,7 @@
 
 #include "apps/pair/match_pair.h"
 #include "apps/runtime/text_table.h"
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/transform_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

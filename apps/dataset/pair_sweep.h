@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/runtime/progress.h"
-#include "io/dataset_file.h"
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pairs/dataset_file.h"
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh/mesh.h"

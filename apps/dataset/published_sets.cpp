@@ -2,7 +2,7 @@
 #include "apps/dataset/published_sets.h"
 
 #include "apps/runtime/embedded_files.h"
-#include "io/toml_file.h"
+#include "io/text/toml_file.h"
 
 namespace corral {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/dataset/retrieval_scenes.h"
 
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"

@@ -5,8 +5,8 @@
 #include <cctype>
 #include <filesystem>
 
-#include "io/file.h"
-#include "io/mesh_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 

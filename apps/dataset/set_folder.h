@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 
 namespace corral {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/csv_file.h"
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <new>
 
-#include "io/csv_file.h"
-#include "io/label_file.h"
-#include "io/line_reader.h"
-#include "io/transform_file.h"
+#include "io/matches/label_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/csv_file.h"
+#include "io/text/line_reader.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "io/feature_file.h"
+#include "io/matches/feature_file.h"
 #include "kernel/correspondence_set.h"
 #include "kernel/surface/feature_matching.h"
 

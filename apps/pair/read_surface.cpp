@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 

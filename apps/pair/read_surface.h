@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 
 namespace corral {
 

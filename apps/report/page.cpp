@@ -11,7 +11,7 @@
 #include "apps/report/page_tables.h"
 #include "apps/runtime/embedded_files.h"
 #include "apps/runtime/json.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

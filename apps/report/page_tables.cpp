@@ -11,7 +11,7 @@
 
 #include "apps/report/figure/method_style.h"
 #include "apps/runtime/json.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -10,9 +10,9 @@
 #include "apps/report/figure/method_style.h"
 #include "apps/report/study_figures.h"
 #include "apps/runtime/text_table.h"
-#include "io/mesh_file.h"
-#include "io/toml_file.h"
-#include "io/transform_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/results/study_folder.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 
 namespace corral {
 

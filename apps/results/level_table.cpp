@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "apps/results/statistics.h"
-#include "io/line_reader.h"
+#include "io/text/line_reader.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "apps/results/measures.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "io/csv_file.h"
-#include "io/file.h"
-#include "io/line_reader.h"
+#include "io/disk/file.h"
+#include "io/text/csv_file.h"
+#include "io/text/line_reader.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -2,7 +2,7 @@
 #include "apps/results/study_results.h"
 
 #include "apps/results/statistics.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

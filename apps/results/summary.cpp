@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "apps/results/comparison.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

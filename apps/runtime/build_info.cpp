@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "apps/runtime/build_facts.h"  // written by build_facts.cmake
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

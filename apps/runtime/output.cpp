@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 
 namespace corral {
 namespace {

@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "io/file.h"
-#include "io/staged_files.h"
+#include "io/disk/file.h"
+#include "io/disk/staged_files.h"
 #include "kernel/error.h"
 
 namespace corral {

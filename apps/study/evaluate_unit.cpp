@@ -17,9 +17,9 @@
 #include "apps/pair/truth_fit.h"
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
-#include "io/matches_file.h"
-#include "io/open_file.h"
-#include "io/transform_file.h"
+#include "io/disk/open_file.h"
+#include "io/matches/matches_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -10,7 +10,7 @@
 #include "apps/runtime/json.h"
 #include "apps/study/content_store.h"
 #include "apps/study/work_list.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 
 namespace corral {
 

@@ -11,8 +11,8 @@
 #include "apps/pair/truth_fit.h"
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
-#include "io/file.h"
-#include "io/staged_files.h"
+#include "io/disk/file.h"
+#include "io/disk/staged_files.h"
 
 namespace corral {
 namespace {

@@ -6,7 +6,7 @@
 #include <regex>
 #include <tuple>
 
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -9,7 +9,7 @@
 #include "apps/study/evaluate_unit.h"
 #include "apps/study/shard.h"
 #include "apps/study/study_call.h"
-#include "io/append_file.h"
+#include "io/disk/append_file.h"
 
 namespace corral {
 

@@ -8,8 +8,8 @@
 #include "apps/runtime/json.h"
 #include "apps/runtime/workers.h"
 #include "grouping/registry.h"
-#include "io/file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -8,7 +8,7 @@
 #include "apps/study/plan.h"
 #include "apps/study/study.h"
 #include "apps/study/study_journals.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "grouping/registry.h"
-#include "io/line_reader.h"
-#include "io/toml_file.h"
+#include "io/text/line_reader.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 
 namespace corral {

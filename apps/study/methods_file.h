@@ -6,7 +6,7 @@
 
 #include "apps/pair/foreign_answer.h"
 #include "apps/study/specification.h"
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 
 namespace corral {
 

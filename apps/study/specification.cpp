@@ -10,9 +10,9 @@
 #include "apps/runtime/embedded_files.h"
 #include "apps/study/experiment_options.h"
 #include "grouping/registry.h"
-#include "io/file.h"
-#include "io/line_reader.h"
-#include "io/toml_file.h"
+#include "io/disk/file.h"
+#include "io/text/line_reader.h"
+#include "io/text/toml_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -21,8 +21,8 @@
 #include "apps/study/finished_units.h"
 #include "apps/study/manifest.h"
 #include "apps/study/plan.h"
-#include "io/file.h"
-#include "io/open_file.h"
+#include "io/disk/file.h"
+#include "io/disk/open_file.h"
 #include "kernel/error.h"
 
 namespace corral {

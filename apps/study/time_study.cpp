@@ -12,7 +12,7 @@
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
 #include "grouping/registry.h"
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 

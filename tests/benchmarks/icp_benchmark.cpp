@@ -16,7 +16,7 @@
 #include <iostream>
 #include <memory>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/evaluation.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "tests/benchmarks/our_stages.h"
 #include "tests/peers/process_cost.h"
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "io/file.h"
-#include "io/mesh_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/number_text.h"
 #include "tests/benchmarks/program.h"
 #include "tests/benchmarks/ratio_table.h"

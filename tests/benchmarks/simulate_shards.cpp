@@ -11,7 +11,7 @@
 #include "apps/study/manifest.h"
 #include "apps/study/plan.h"
 #include "apps/study/study_journals.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/error.h"
 
 namespace corral {

@@ -9,10 +9,10 @@
 #include <exception>
 #include <fstream>
 
-#include "io/csv_file.h"
-#include "io/file.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"

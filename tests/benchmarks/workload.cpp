@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "tests/benchmarks/our_stages.h"
 

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "io/group_file.h"
-#include "io/inflate.h"
-#include "io/matches_file.h"
-#include "io/mesh_file.h"
-#include "io/pose_entry.h"
-#include "io/transform_file.h"
+#include "io/disk/inflate.h"
+#include "io/matches/group_file.h"
+#include "io/matches/matches_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/pose_entry.h"
+#include "io/pose/transform_file.h"
 #include "kernel/random.h"
 #include "kernel/synthetic.h"
-#include "tests/io/gzip.h"
-#include "tests/io/pcd_encoder.h"
-#include "tests/io/ply_encoder.h"
+#include "tests/io/disk/gzip.h"
+#include "tests/io/mesh/pcd_encoder.h"
+#include "tests/io/mesh/ply_encoder.h"
 #include "tests/io/scratch.h"
 
 namespace corral {

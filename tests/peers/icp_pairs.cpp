@@ -16,9 +16,9 @@
 
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
-#include "io/dataset_file.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pairs/dataset_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/normals.h"
 #include "kernel/surface/search/nearest_points.h"

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 #include "kernel/surface/search/neighborhood.h"
 #include "tests/benchmarks/our_stages.h"
 #include "tests/peers/pcl_surface.h"

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "io/file.h"
-#include "io/group_file.h"
-#include "io/matches_file.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/matches/group_file.h"
+#include "io/matches/matches_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/synthetic.h"
 #include "tests/io/scratch.h"
 #include "tests/support/meshes.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/csv_file.h"
-#include "io/file.h"
+#include "io/disk/file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 #include "kernel/random.h"
 

@@ -9,7 +9,7 @@
 
 #include "apps/results/study_folder.h"
 #include "apps/study/content_store.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"

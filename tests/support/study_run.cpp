@@ -6,10 +6,10 @@
 
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
-#include "io/csv_file.h"
-#include "io/file.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral::testing {

@@ -6,8 +6,8 @@
 #include "apps/python/module/arrays.h"
 #include "apps/python/module/parts.h"
 #include "apps/python/module/records.h"
-#include "io/matches_file.h"
-#include "io/mesh_file.h"
+#include "io/matches/matches_file.h"
+#include "io/mesh/mesh_file.h"
 
 namespace corral::python {
 namespace {

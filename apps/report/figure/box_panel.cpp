@@ -9,7 +9,7 @@
 #include "apps/report/figure/drawing.h"
 #include "apps/report/figure/folders.h"
 #include "apps/report/figure/printed_text.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "apps/report/figure/folders.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 
 extern char** environ;
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 
 namespace corral {

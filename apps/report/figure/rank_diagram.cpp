@@ -8,7 +8,7 @@
 #include "apps/report/figure/drawing.h"
 #include "apps/report/figure/printed_text.h"
 #include "apps/runtime/text_table.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "apps/align/alignment_files.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 #include "tests/support/object_views.h"
 #include "tests/support/program.h"

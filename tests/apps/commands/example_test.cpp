@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 #include "tests/support/program.h"
 
 namespace corral {

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
-#include "tests/io/npy_encoder.h"
+#include "tests/io/array/npy_encoder.h"
 #include "tests/support/program.h"
 
 namespace corral {

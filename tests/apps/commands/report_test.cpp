@@ -7,7 +7,7 @@
 
 #include "apps/report/pair_gallery.h"
 #include "apps/report/study_figures.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "tests/support/program.h"
 

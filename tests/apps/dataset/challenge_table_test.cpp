@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/synthetic.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "apps/runtime/workers.h"
-#include "io/dataset_file.h"
-#include "io/file.h"
-#include "io/mesh_file.h"
-#include "io/transform_file.h"
+#include "io/disk/file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pairs/dataset_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/number_text.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/io/scratch.h"

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "io/dataset_file.h"
+#include "io/pairs/dataset_file.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/support/program.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/dataset/measure_dataset.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "tests/support/program.h"
 
 namespace corral {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/transform_file.h"
+#include "io/pose/transform_file.h"
 #include "kernel/synthetic.h"
 #include "tests/io/scratch.h"
 

@@ -9,7 +9,7 @@
 
 #include "apps/report/figure/method_style.h"
 #include "apps/report/page_scenes.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "tests/io/scratch.h"
 #include "tests/support/meshes.h"

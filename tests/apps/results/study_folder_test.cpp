@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "tests/io/scratch.h"

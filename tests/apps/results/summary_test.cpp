@@ -6,7 +6,7 @@
 
 #include "apps/results/comparison.h"
 #include "apps/runtime/workers.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/number_text.h"
 #include "tests/io/scratch.h"
 #include "tests/support/simulated_run.h"

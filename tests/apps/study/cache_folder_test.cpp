@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "apps/study/content_store.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "tests/io/scratch.h"
 
 namespace corral {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/pair/match_pair.h"
-#include "io/matches_file.h"
+#include "io/matches/matches_file.h"
 #include "kernel/random.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "tests/io/scratch.h"

@@ -12,7 +12,7 @@
 #include "apps/report/figure/panel_figure.h"
 #include "apps/report/figure/rank_diagram.h"
 #include "grouping/registry.h"
-#include "io/csv_file.h"
+#include "io/text/csv_file.h"
 #include "kernel/error.h"
 #include "tests/apps/report/figure/report_folder.h"
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "apps/report/page.h"
-#include "io/file.h"
+#include "io/disk/file.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/apps/report/page/browser.h"
