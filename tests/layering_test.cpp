@@ -76,6 +76,11 @@ std::map<std::string, Room> make_rooms() {
     below.insert(floor + "/figure");
     rooms[floor] = {below, kAppLibraries};
   }
+  for (const char* subject : {"pair", "surface", "data", "study"}) {  // beside each other, over what they share
+    const std::string room = std::string("apps/commands/") + subject;
+    rooms[room] = rooms["apps/commands"];
+    rooms[room].includes.insert(room);
+  }
   Names under_figures = rooms["apps/report"].includes;
   under_figures.erase("apps/report");  // figures know no report
   rooms["apps/report/figure"] = {under_figures, kAppLibraries};

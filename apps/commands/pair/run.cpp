@@ -2,7 +2,7 @@
 // corral run: two meshes in, every grouper scored by its alignment.
 #include <algorithm>
 
-#include "apps/commands/run_report.h"
+#include "apps/commands/pair/run_report.h"
 #include "apps/pair/match_report.h"
 #include "apps/runtime/output.h"
 

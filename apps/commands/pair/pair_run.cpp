@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/pair_run.h"
+#include "apps/commands/pair/pair_run.h"
 
 #include <cmath>
 #include <sstream>
 
 #include "apps/commands/command_files.h"
-#include "apps/commands/run_report.h"
+#include "apps/commands/pair/run_report.h"
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/normal_sides.h"
 #include "apps/pair/surface_choice.h"

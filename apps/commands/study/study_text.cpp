@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/study_text.h"
+#include "apps/commands/study/study_text.h"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral merge: the tables of a study from its shards.
 #include "apps/commands/commands.h"
-#include "apps/commands/study_text.h"
+#include "apps/commands/study/study_text.h"
 #include "apps/runtime/output.h"
 
 namespace corral {

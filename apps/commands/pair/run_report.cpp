@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/run_report.h"
+#include "apps/commands/pair/run_report.h"
 
 #include "apps/pair/match_report.h"
 #include "apps/pair/report_pair.h"

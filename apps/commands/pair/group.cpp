@@ -2,7 +2,7 @@
 // corral group: groupers on a table of matches.
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/commands/pair_run.h"
+#include "apps/commands/pair/pair_run.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/pair_run.h"
+#include "apps/commands/pair/pair_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

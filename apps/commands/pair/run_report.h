@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands/pair_run.h"
+#include "apps/commands/pair/pair_run.h"
 
 namespace corral {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "apps/commands/command_options.h"
-#include "apps/commands/study_options.h"
-#include "apps/commands/study_text.h"
+#include "apps/commands/study/study_options.h"
+#include "apps/commands/study/study_text.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"

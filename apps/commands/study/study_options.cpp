@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/commands/study_options.h"
+#include "apps/commands/study/study_options.h"
 
 #include "apps/commands/command_options.h"
 #include "io/disk/file.h"

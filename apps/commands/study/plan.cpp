@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "apps/commands/commands.h"
-#include "apps/commands/study_options.h"
+#include "apps/commands/study/study_options.h"
 #include "apps/report/figure/folders.h"
 #include "apps/report/figure/gnuplot.h"
 #include "apps/report/figure/panel_figure.h"
