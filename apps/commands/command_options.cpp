@@ -244,6 +244,43 @@ void add_pose_options(CLI::App& command, std::string& rows, std::string& select)
       "groupers that can keep poses");
 }
 
+void add_external_options(CLI::App& command, ExternalSettings& settings) {
+  command
+      .add_option("--external", settings.methods,
+                  "Another program as a further grouper: NAME='python3 mine.py {matches} {group}'. It reads the table of "
+                  "matches and writes the rows that it keeps, or a pose to {pose}, or both (apps/README.md)")
+      ->type_name("NAME=COMMAND")
+      ->allow_extra_args(false);
+  command
+      .add_option("--external-timeout", settings.timeout_s,
+                  "Longest call of such a program in seconds: then it is killed, with all that it started")
+      ->capture_default_str();
+}
+
+std::vector<ExternalMethod> external_methods(const ExternalSettings& settings) {
+  if (!(settings.timeout_s > 0 && settings.timeout_s <= 1e6))
+    throw UsageError("--external-timeout: expected seconds above zero, 1000000 at most");
+  std::vector<ExternalMethod> methods;
+  for (const std::string& text : settings.methods) try {
+      methods.push_back(parse_external(text));
+      methods.back().timeout_s = settings.timeout_s;
+      methods.back().memory_bytes = static_cast<std::uint64_t>(half_of_memory());
+      for (std::size_t i = 0; i + 1 < methods.size(); ++i)
+        if (methods[i].name == methods.back().name) throw UsageError("--external: " + methods[i].name + " occurs twice");
+    } catch (const InvalidInput& error) {
+      throw UsageError(error.what());
+    }
+  return methods;
+}
+
+std::vector<std::string> words_of(const ExternalSettings& settings) {
+  std::vector<std::string> words;
+  for (const std::string& method : settings.methods) words.insert(words.end(), {"--external", method});
+  if (settings.timeout_s != ExternalSettings().timeout_s)
+    words.insert(words.end(), {"--external-timeout", to_text(settings.timeout_s)});
+  return words;
+}
+
 void add_memory_limit(CLI::App& command, std::uint64_t& bytes) {
   bytes = static_cast<std::uint64_t>(half_of_memory());
   add_size(command, "--memory-limit", bytes,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands/commands.h"
+#include "apps/pair/external_method.h"
 #include "apps/pair/match_settings.h"
 #include "grouping/registry.h"
 #include "kernel/rigid_transform.h"
@@ -66,6 +67,17 @@ struct SensorSettings {
 };
 void add_sensor_options(CLI::App& command, SensorSettings& settings);
 ViewOptions view_options(const SensorSettings& settings);
+
+/// --external and --external-timeout, as typed.
+struct ExternalSettings {
+  std::vector<std::string> methods;
+  double timeout_s = 60;
+};
+void add_external_options(CLI::App& command, ExternalSettings& settings);
+/// Each of them once, with half of the machine's memory.
+std::vector<ExternalMethod> external_methods(const ExternalSettings& settings);
+/// The words that give these options again.
+std::vector<std::string> words_of(const ExternalSettings& settings);
 
 /// A number of bytes: "1000", "500MB", "1.5GB", "2GiB"; in any case of letters. Absent if it is none.
 std::optional<std::uint64_t> parse_size(const std::string& text);

@@ -114,6 +114,10 @@ class PairStudy {
         records_.push_back(evaluate_answer(task.method, *task.answer, unit_.pair.name, matches_, truth_));
         continue;
       }
+      if (task.external) {
+        records_.push_back(evaluate_external(*task.external, matches_, truth_, 1));
+        continue;
+      }
       const ConfiguredGrouper grouper = find_grouper(task.method).configure(task.options);
       records_.push_back(evaluate_method(task.method, grouper, matches_, truth_, 1));
     }

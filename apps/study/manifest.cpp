@@ -33,7 +33,8 @@ Json to_json(const Experiment& experiment) {
                        {"labels", !method.labels.empty()},
                        {"poses", !method.poses.empty()},
                        {"times", !method.times.empty()},
-                       {"time_ms", json_or_null(method.time_ms)}});
+                       {"time_ms", json_or_null(method.time_ms)},
+                       {"command", method.external ? Json(method.external->command) : Json(nullptr)}});
   for (const std::string& method : info.methods) {
     if (!look_up(groupers(), method)) continue;
     const auto found = experiment.options.find(method);
@@ -97,9 +98,12 @@ Json inputs_json(const WorkList& list, const InputHashes& inputs) {
     *pair = {{"source", hash(unit.pair.source)}, {"target", hash(unit.pair.target)}, {"truth", hash(unit.pair.truth)}};
     if (!unit.pair.matches.empty()) (*pair)["matches"] = hash(unit.pair.matches);
     for (const std::string& truth : unit.pair.equal_truths) (*pair)["equal_truths"].push_back(hash(truth));
-    for (const GroupingTask& task : unit.tasks)
+    for (const GroupingTask& task : unit.tasks) {
       if (task.answer)
         for (const std::string& file : task.answer->files()) (*pair)["answers"][task.method].push_back(hash(file));
+      if (task.external)
+        for (const std::string& file : task.external->files()) (*pair)["programs"][task.method].push_back(hash(file));
+    }
   }
   return pairs.json();
 }
@@ -161,8 +165,7 @@ InputHashes hash_answers(const WorkList& list) {
   InputHashes answers;
   for (const WorkUnit& unit : list.units)
     for (const GroupingTask& task : unit.tasks)
-      if (task.answer)
-        for (const std::string& file : task.answer->files()) answers[file];
+      for (const std::string& file : task.foreign_files()) answers[file];
   fill_hashes(answers, 0);
   for (auto answer = answers.begin(); answer != answers.end();)
     answer = answer->second.empty() ? answers.erase(answer) : std::next(answer);

@@ -14,14 +14,8 @@ namespace {
 
 std::string name_of(const TomlTable& table) {
   const std::string name = table.text("name").value_or("");
-  const auto is_odd = [](unsigned char letter) {
-    const bool is_letter = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
-    return !is_letter && !(letter >= '0' && letter <= '9') && std::string("._+-").find(letter) == std::string::npos;
-  };
-  if (name.empty() || name[0] == '.' || std::any_of(name.begin(), name.end(), is_odd))
-    table.fail("name", "expected name = \"...\" of letters, digits and . _ + - only");
-  if (look_up(groupers(), name) || name == "oracle" || name == "baseline")
-    table.fail("name", corral::quoted(name) + " is in every study, expected another name");
+  if (!is_method_name(name))
+    table.fail("name", corral::quoted(name) + ", expected letters, digits and . _ + - only, and no name of a grouper");
   return name;
 }
 
@@ -85,7 +79,7 @@ void add_methods(Experiment& experiment, const std::vector<ForeignMethod>& metho
   if (methods.empty()) return;
   if (experiment.sweep == Sweep::TableSize)
     throw IoError(experiment.info.name, "",
-                  "takes times, which methods of other programs only state; expected no --methods");
+                  "takes times of groupers alone; expected no methods of other programs");
   for (const ForeignMethod& method : methods) {
     experiment.info.methods.push_back(method.name);
     experiment.info.titles[method.name] = method.title;

@@ -18,7 +18,7 @@ std::vector<ForeignMethod> parse_methods(const std::string& path, const std::str
 /// none of them.
 ForeignAnswer answer_to(const ForeignMethod& method, const Dataset& dataset, const DatasetPair& pair);
 
-/// Appends them to the methods of the experiment. Throws IoError if it has one of that name, or takes times.
+/// Appends them to the methods of the experiment. Throws IoError if it takes times.
 void add_methods(Experiment& experiment, const std::vector<ForeignMethod>& methods);
 
 }  // namespace corral

@@ -59,7 +59,7 @@ class Estimator {
   }
 
   std::uint64_t memory_of(const GroupingTask& task, int rows) {
-    if (task.answer) return 0;
+    if (task.answer || task.external) return 0;  // of another program nothing is known
     std::pair<std::string, OptionOverrides> key{task.method, task.options};
     key.second.erase("seed");  // every call has its own
     const auto [place, is_new] = memory_.try_emplace(std::move(key));

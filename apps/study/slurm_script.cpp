@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/runtime/child_program.h"
+
 namespace corral {
 namespace {
 
@@ -44,14 +46,6 @@ constexpr char kWatch[] =
     "exit \"$status\"\n";
 
 }  // namespace
-
-std::string shell_word(const std::string& text) {
-  constexpr auto kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=,:+";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string word = "'";
-  for (const char letter : text) word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return word + "'";
-}
 
 std::string time_limit(const std::vector<ShardPlan>& plan, int processors) {
   double longest = 0;

@@ -37,7 +37,4 @@ std::string merge_script(const SlurmJobs& jobs);
 /// the shards end: it names those that are unfinished.
 std::string submission(const SlurmJobs& jobs);
 
-/// A text as one word of a POSIX shell.
-std::string shell_word(const std::string& text);
-
 }  // namespace corral

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/pair/external_method.h"
 #include "apps/pair/match_settings.h"
 #include "apps/results/study_folder.h"
 #include "kernel/options.h"
@@ -19,12 +21,13 @@ struct AttributeFilter {
   std::vector<std::string> values;
 };
 
-/// A method of another program, whose answers are in files: an entry of methods.toml. Patterns of files, with {pair} and columns
-/// of pairs.csv; empty where it gives none.
+/// A method of another program. Its answers are in files (an entry of methods.toml: patterns with {pair} and columns of
+/// pairs.csv, empty where it gives none), or it is called.
 struct ForeignMethod {
   std::string name, title;
   std::string labels, poses, times;
   std::optional<double> time_ms;
+  std::shared_ptr<const ExternalMethod> external = {};  ///< then there are no files
 };
 
 /// The quantity that an experiment sweeps.

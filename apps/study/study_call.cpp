@@ -8,6 +8,17 @@
 
 namespace corral {
 
+namespace {
+
+std::vector<ForeignMethod> foreign_methods(const std::vector<ExternalMethod>& externals) {
+  std::vector<ForeignMethod> methods;
+  for (const ExternalMethod& external : externals)
+    methods.push_back({external.name, external.name, "", "", "", {}, std::make_shared<ExternalMethod>(external)});
+  return methods;
+}
+
+}  // namespace
+
 StudyCall study_call(const std::vector<std::string>& experiments, const std::string& data) {
   StudyCall call;
   call.data = data;
@@ -25,6 +36,7 @@ WorkList work_list_of(const StudyCall& call) {
     experiment.by_surface = experiment.by_surface || call.by_surface;
     override_options(experiment, call.options);
     if (call.methods) add_methods(experiment, parse_methods(call.methods->path, call.methods->text));
+    add_methods(experiment, foreign_methods(call.externals));
   }
   return make_work_list(std::move(experiments), call.data);
 }
@@ -33,12 +45,17 @@ Json to_json(const StudyCall& call) {
   const auto absolute = [](const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
   };
-  Json experiments = Json::array(), methods = nullptr;
+  Json experiments = Json::array(), externals = Json::array(), methods = nullptr;
+  for (const ExternalMethod& external : call.externals)
+    externals.push_back({{"name", external.name},
+                         {"command", external.command},
+                         {"timeout_s", external.timeout_s},
+                         {"memory_bytes", external.memory_bytes}});
   if (call.methods) methods = {{"path", absolute(call.methods->path)}, {"text", call.methods->text}};
   for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
   return {{"experiments", experiments},   {"methods", methods},  {"data", absolute(call.data)},
           {"options", call.options},      {"dense", call.dense}, {"all_rows", call.all_rows},
-          {"by_surface", call.by_surface}};
+          {"by_surface", call.by_surface}, {"externals", externals}};
 }
 
 StudyCall study_call_of(const Json& json) {
@@ -48,6 +65,8 @@ StudyCall study_call_of(const Json& json) {
   if (!methods.is_null()) call.methods = {methods.at("path"), methods.at("text")};
   call.data = json.at("data");
   call.options = json.at("options").get<OptionsByName>();
+  for (const Json& each : json.at("externals"))
+    call.externals.push_back({each.at("name"), each.at("command"), each.at("timeout_s"), each.at("memory_bytes")});
   call.dense = json.at("dense");
   call.all_rows = json.at("all_rows");
   call.by_surface = json.at("by_surface");

@@ -19,6 +19,7 @@ struct StudyCall {
   std::optional<NamedText> methods;                          ///< methods of other programs, for every experiment
   std::string data;                                          ///< a data set, or a folder of data sets
   OptionsByName options;                                     ///< of --set
+  std::vector<ExternalMethod> externals;                     ///< of --external
   bool dense = false, all_rows = false, by_surface = false;  ///< as of Experiment, for all of them
 };
 

@@ -217,10 +217,16 @@ class Collector {
       if (look_up(groupers(), method))
         for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name))
           add_task(task, unit, sample);
-    for (const ForeignMethod& method : experiment.foreign)
-      add_task({method.name, {}, 0, std::make_shared<ForeignAnswer>(answer_to(method, dataset, unit.pair))}, unit,
-               sample);
+    for (const ForeignMethod& method : experiment.foreign) add_task(task_of(method, dataset, unit.pair), unit, sample);
     list_.samples.push_back(std::move(sample));
+  }
+
+  static GroupingTask task_of(const ForeignMethod& method, const Dataset& dataset, const DatasetPair& pair) {
+    if (!method.external)
+      return {method.name, {}, 0, std::make_shared<ForeignAnswer>(answer_to(method, dataset, pair)), {}};
+    GroupingTask task{method.name, {}, 0, {}, method.external};
+    for (const OptionValue& option : method.external->options()) task.options[option.name] = option.value;
+    return task;
   }
 
   /// All repeats of a stochastic grouper, one call of any other.
@@ -269,11 +275,14 @@ int level_of(const std::vector<StudyLevel>& levels, double value) {
   return -1;
 }
 
+std::vector<std::string> GroupingTask::foreign_files() const {
+  return answer ? answer->files() : external ? external->files() : std::vector<std::string>();
+}
+
 std::vector<std::string> WorkUnit::files() const {
   std::vector<std::string> all = pair.files();
   for (const GroupingTask& task : tasks)
-    if (task.answer)
-      for (const std::string& file : task.answer->files()) all.push_back(file);
+    for (const std::string& file : task.foreign_files()) all.push_back(file);
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/pair/external_method.h"
 #include "apps/pair/foreign_answer.h"
 #include "apps/study/specification.h"
 #include "io/pairs/dataset_file.h"
@@ -18,7 +19,11 @@ struct GroupingTask {
   std::string method;
   OptionOverrides options;
   int repeat = 0;
-  std::shared_ptr<const ForeignAnswer> answer = {};  ///< then `method` is that of another program; null for a grouper
+  std::shared_ptr<const ForeignAnswer> answer = {};      ///< of another program, in files; null for a grouper
+  std::shared_ptr<const ExternalMethod> external = {};  ///< another program, to be called; null for a grouper
+
+  /// The answers of another program, or the program itself; none of a grouper.
+  std::vector<std::string> foreign_files() const;
 
   bool operator==(const GroupingTask& other) const {
     return method == other.method && options == other.options && repeat == other.repeat;
@@ -40,7 +45,7 @@ struct WorkUnit {
   bool all_rows = false, by_surface = false;           ///< as of Experiment
   std::string scene = {};                              ///< scene_of the pair
 
-  /// Those of the pair, then those of the answers of other programs.
+  /// Those of the pair, then those of the answers of other programs and of the programs themselves.
   std::vector<std::string> files() const;
 };
 

@@ -4,6 +4,7 @@
 #include "apps/commands/command_options.h"
 #include "apps/commands/pair/pair_run.h"
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/external_method.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
@@ -17,6 +18,7 @@ namespace {
 
 struct Settings {
   std::string matches, method, output;
+  ExternalSettings external;
   std::vector<std::string> set;
   int repeat = 1;
   std::uint64_t memory_limit = 0;
@@ -28,7 +30,12 @@ struct Grouped {
   std::string method;
   Json report;
   std::optional<GroupingResult> found;
-  MethodState state = MethodState::Unknown;  ///< TooLarge or NotApplicable if it was not grouped
+  MethodState state = MethodState::Unknown;  ///< TooLarge, NotApplicable or Failed if it was not grouped
+
+  void refuse(MethodState why, const std::string& cause) {
+    state = why;
+    report["status"] = to_text(MethodStatus{why, cause});
+  }
 };
 
 /// A terminal says what is being done meanwhile.
@@ -51,13 +58,9 @@ Grouped group_by(const std::string& method, const ConfiguredGrouper& grouper, co
                    {"repeat", settings.repeat},
                    {"status", "grouped"}},
                   {}};
-  const auto refuse = [&](MethodState state, const std::string& cause) {
-    grouped.state = state;
-    grouped.report["status"] = to_text(MethodStatus{state, cause});
-  };
   const std::string refusal = too_large(grouper, matches.size(), static_cast<double>(settings.memory_limit));
   if (!refusal.empty()) {
-    refuse(MethodState::TooLarge, refusal);
+    grouped.refuse(MethodState::TooLarge, refusal);
     say("corral group: " + method + " would use too much memory for " + std::to_string(matches.size()) +
         " matches: " + refusal + " (--memory-limit)");
     return grouped;
@@ -68,7 +71,33 @@ Grouped group_by(const std::string& method, const ConfiguredGrouper& grouper, co
     grouped.report["time_ms"] = timed.time_ms;
     grouped.found = std::move(timed.found);
   } catch (const MissingColumn& error) {
-    refuse(MethodState::NotApplicable, error.what());
+    grouped.refuse(MethodState::NotApplicable, error.what());
+  }
+  return grouped;
+}
+
+Grouped group_by(const ExternalMethod& method, const CorrespondenceSet& matches, const Settings& settings) {
+  Progress progress(1);
+  progress.begin(method.name + " on " + std::to_string(matches.size()) + " matches");
+  MethodRecord record = evaluate_external(method, matches, std::nullopt, settings.repeat);
+  Grouped grouped{method.name,
+                  {{"method", method.name},
+                   {"options", to_json(method.options())},
+                   {"matches", matches.size()},
+                   {"working_memory_bytes", nullptr},
+                   {"selected", nullptr},
+                   {"time_ms", json_or_null(record.time_ms)},
+                   {"start_up_ms", nullptr},
+                   {"repeat", settings.repeat},
+                   {"status", "grouped"}},
+                  {}};
+  if (record.failure.empty()) {
+    grouped.report["selected"] = record.found.selected.size();
+    grouped.report["start_up_ms"] = start_up_ms(method);
+    grouped.found = std::move(record.found);
+  } else {
+    grouped.refuse(MethodState::Failed, record.failure);
+    say("corral group: " + record.failure);
   }
   return grouped;
 }
@@ -96,7 +125,7 @@ int put_all(const std::vector<Grouped>& all, int matches, const Settings& settin
   bool is_partial = false;
   for (const Grouped& grouped : all) {
     reports.push_back(grouped.report);
-    is_partial = is_partial || grouped.state == MethodState::TooLarge;
+    is_partial = is_partial || grouped.state == MethodState::TooLarge || grouped.state == MethodState::Failed;
     if (grouped.found && !settings.output.empty())
       files.push_back({settings.output + "/group_" + grouped.method + ".csv", text_of(grouped, matches)});
   }
@@ -109,13 +138,16 @@ int put_all(const std::vector<Grouped>& all, int matches, const Settings& settin
 }
 
 int group(const Settings& settings) {
-  const std::vector<std::string> methods = method_names(settings.method);
+  if (settings.method.empty() && settings.external.methods.empty()) throw UsageError("expected --method or --external");
+  const std::vector<std::string> methods =
+      settings.method.empty() ? std::vector<std::string>() : method_names(settings.method);
+  const std::vector<ExternalMethod> externals = external_methods(settings.external);
   const OptionsByName options = parse_set(settings.set);
   require_in_use(options, methods);
   std::vector<ConfiguredGrouper> configured;
   for (const std::string& method : methods) configured.push_back(configure_grouper(method, options));
   if (settings.repeat < 1) throw UsageError("--repeat is " + std::to_string(settings.repeat) + ", expected at least 1");
-  const bool is_one = methods.size() == 1;
+  const bool is_one = methods.size() + externals.size() == 1;
   keep_inputs({settings.matches}, {settings.output});
   if (is_one && !settings.output.empty()) check_writable(settings.output);
   const CorrespondenceSet matches = read_matches(settings.matches);
@@ -123,6 +155,7 @@ int group(const Settings& settings) {
   std::vector<Grouped> all;
   for (std::size_t i = 0; i < methods.size(); ++i)
     all.push_back(group_by(methods[i], configured[i], matches, settings));
+  for (const ExternalMethod& method : externals) all.push_back(group_by(method, matches, settings));
   return is_one ? put_one(all.front(), matches.size(), settings) : put_all(all, matches.size(), settings);
 }
 
@@ -132,8 +165,9 @@ void add_group(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("group", "One grouper, or all, on a table of matches");
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
-  command->add_option("-m,--method", settings->method, "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
-      ->required();
+  command->add_option("-m,--method", settings->method,
+                      "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","));
+  add_external_options(*command, settings->external);
   add_set_option(*command, settings->set);
   command
       ->add_option("-o,--output", settings->output,
@@ -146,6 +180,7 @@ void add_group(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  corral group matches.csv --method gc -o group.csv\n"
       "  corral group matches.csv --method all -o groups\n"
+      "  corral group matches.csv --external \"mine=python3 mine.py {matches} {group}\" -o group.csv\n"
       "  corral group matches.csv --method ransac --set ransac.seed=7 --set ransac.iterations=1000 --json --repeat 10");
   command->callback([settings, &action] { action = [settings] { return group(*settings); }; });
 }

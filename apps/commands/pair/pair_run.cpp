@@ -109,7 +109,10 @@ PairRun evaluate(const RunSettings& settings) {
   for (const std::string& name : run.methods)
     run.groupers.push_back(
         configure_grouper(name, settings.select == kSelect[1] ? keeping_poses(name, options) : options));
-  keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, files_of_run(settings.output));
+  run.externals = external_methods(settings.external);
+  for (const ExternalMethod& method : run.externals) run.methods.push_back(method.name);
+  keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file},
+              files_of_run(settings.output, run.externals));
   std::optional<RigidTransform> truth;
   if (!settings.truth.empty()) truth = read_truth(settings.truth);
   std::optional<Surfaces> surfaces;
@@ -130,10 +133,14 @@ PairRun evaluate(const RunSettings& settings) {
     progress.begin("overlap");
     judge_truth(run, *truth, surfaces, settings.threshold_pr);
   }
-  for (std::size_t i = 0; i < run.methods.size(); ++i) {
+  for (std::size_t i = 0; i < run.groupers.size(); ++i) {
     progress.begin(call_text(run.methods[i], run.pair.matches.size(), settings.repeat));
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
+  }
+  for (const ExternalMethod& method : run.externals) {
+    progress.begin(method.name + " on " + std::to_string(run.pair.matches.size()) + " matches");
+    run.records.push_back(evaluate_external(method, run.pair.matches, run.truth, settings.repeat));
   }
   if (settings.select == kSelect[1]) {
     progress.begin("choice by the surfaces");

@@ -24,6 +24,7 @@ struct RunSettings {
   int repeat = 1;
   std::uint64_t memory_limit = 0;
   MatchSettings match;
+  ExternalSettings external;
   std::vector<std::string> set;
   std::string rows = "selected", select = "score";
   bool drop_stray = false, dense = false, explain = false, json = false, verbose = false;
@@ -39,7 +40,8 @@ std::string call_text(const std::string& method, int matches, int repeat);
 /// What came of it.
 struct PairRun {
   std::vector<std::string> methods;
-  std::vector<ConfiguredGrouper> groupers;
+  std::vector<ConfiguredGrouper> groupers;    ///< of the first of these
+  std::vector<ExternalMethod> externals;      ///< of the others
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;

@@ -77,6 +77,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag(
       "--explain", settings->explain,
       "Explain in words where the pair was registered or lost, before the grouping and by each grouper; needs --truth");
+  add_external_options(*command, settings->external);
   add_memory_limit(*command, settings->memory_limit);
   command->add_flag("--json", settings->json, "As JSON; null where something is undefined");
   command->add_flag("-v,--verbose", settings->verbose, "The stage report on standard error");

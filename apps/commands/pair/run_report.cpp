@@ -50,7 +50,9 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
   for (std::size_t i = 0; i < run.records.size(); ++i) {
     methods.push_back(corral::to_json(run.records[i]));
     if (settings.dense) methods.back().emplace("dense", nullptr);  // where there was no pose to begin with
-    options[run.methods[i]] = corral::to_json(run.groupers[i].options);
+    const bool is_external = i >= run.groupers.size();
+    options[run.methods[i]] = corral::to_json(is_external ? run.externals[i - run.groupers.size()].options()
+                                                          : run.groupers[i].options);
   }
   for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));
   const auto name = [](const std::string& file) { return file.empty() ? Json(nullptr) : Json(file); };
@@ -78,13 +80,15 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
   return json;
 }
 
-std::vector<std::string> files_of_run(const std::string& folder) {
+std::vector<std::string> files_of_run(const std::string& folder, const std::vector<ExternalMethod>& externals) {
   std::vector<std::string> files;
   if (folder.empty()) return files;
   for (const char* name : {"matches.csv", "match_report.json", "methods.csv", "run.json", "dense.csv"})
     files.push_back(folder + "/" + name);
   for (const Grouper& grouper : groupers())
     for (const std::string& name : files_of(grouper.name)) files.push_back(folder + "/" + name);
+  for (const ExternalMethod& method : externals)
+    for (const std::string& name : files_of(method.name)) files.push_back(folder + "/" + name);
   return files;
 }
 
@@ -106,7 +110,7 @@ void write_folder(const PairRun& run, const RunSettings& settings) {
       files.push_back({folder + names[2], transform_text(*record.pose.target_from_source)});
   }
   write_files(files);
-  for (const std::string& path : files_of_run(settings.output)) {
+  for (const std::string& path : files_of_run(settings.output, run.externals)) {
     const auto is_new = [&](const FileContent& file) { return file.path == path; };
     if (std::none_of(files.begin(), files.end(), is_new)) remove_file(path);
   }

@@ -6,6 +6,7 @@
 #include "apps/commands/command_options.h"
 #include "apps/commands/study/study_options.h"
 #include "apps/commands/study/study_text.h"
+#include "apps/runtime/child_program.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
@@ -86,7 +87,7 @@ int evaluate_pairs(const Settings& settings, const StudyCall& call, const WorkLi
 /// The call as it would be typed again.
 std::string command_line(const Settings& settings) {
   std::string line = "corral evaluate";
-  for (const std::string& word : words_of(settings.options)) line += " " + word;
+  for (const std::string& word : words_of(settings.options)) line += " " + shell_word(word);
   line += " -o " + settings.study.run;
   if (settings.shard) line += " --shard " + *settings.shard;
   if (settings.jobs) line += " --jobs " + std::to_string(*settings.jobs);

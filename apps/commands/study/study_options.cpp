@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/study/study_options.h"
 
-#include "apps/commands/command_options.h"
 #include "io/disk/file.h"
 #include "kernel/error.h"
 
@@ -19,6 +18,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
                   "Methods of other programs to be scored beside the groupers: methods.toml, which names the files of "
                   "their selections and poses (paper/README.md)")
       ->type_name("FILE");
+  add_external_options(command, options.external);
   add_set_option(command, options.set);
   command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
   add_pose_options(command, options.rows, options.select);
@@ -28,6 +28,7 @@ StudyCall study_call(const StudyOptions& options) {
   StudyCall call = study_call(options.experiments, options.data);
   if (!options.methods.empty()) call.methods = {options.methods, read_file(options.methods)};
   call.options = parse_set(options.set);
+  call.externals = external_methods(options.external);
   call.dense = options.dense;
   call.all_rows = options.rows == kRows[1];
   call.by_surface = options.select == kSelect[1];
@@ -46,6 +47,8 @@ std::vector<std::string> words_of(const StudyOptions& options) {
   std::vector<std::string> words = options.experiments;
   words.insert(words.end(), {"--data", options.data});
   if (!options.methods.empty()) words.insert(words.end(), {"--methods", options.methods});
+  const std::vector<std::string> external = words_of(options.external);
+  words.insert(words.end(), external.begin(), external.end());
   for (const std::string& option : options.set) words.insert(words.end(), {"--set", option});
   if (options.dense) words.push_back("--dense");
   if (options.rows != kRows[0]) words.insert(words.end(), {"--rows", options.rows});

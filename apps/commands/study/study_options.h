@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/commands/command_options.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/study/study_call.h"
 
@@ -15,6 +16,7 @@ struct StudyOptions {
   std::vector<std::string> experiments;
   std::string data;
   std::string methods;  ///< file; may be empty
+  ExternalSettings external;
   std::vector<std::string> set;
   bool dense = false;
   std::string rows = kRows[0], select = kSelect[0];

@@ -7,6 +7,7 @@
 
 #include "apps/commands/command_options.h"
 #include "apps/commands/study/study_options.h"
+#include "apps/runtime/child_program.h"
 #include "apps/runtime/output.h"
 #include "apps/study/shard.h"
 #include "apps/study/slurm_script.h"

@@ -48,7 +48,6 @@ TEST(SlurmScript, AShellGetsEveryWordAsItIs) {
   jobs.shards = 7;
   EXPECT_EQ(printed_by(shards_script(jobs), "SLURM_ARRAY_TASK_ID=3"), in_brackets(kHardWords) + "[--shard][3/7]");
   EXPECT_EQ(printed_by(merge_script(jobs)), in_brackets(kHardWords));
-  EXPECT_EQ(shell_word("/data/b3r_1.5:x=+,"), "/data/b3r_1.5:x=+,") << "is read more easily";
 }
 
 TEST(SlurmScript, AsksForWhatIsAskedFor) {

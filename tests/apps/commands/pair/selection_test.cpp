@@ -61,6 +61,32 @@ TEST(Group, JsonHoldsTheOptionsAndTheMedianTime) {
   EXPECT_EQ(json["selected"], read_group(place / "g.csv").selected.size());
 }
 
+TEST(Group, AnotherProgramIsCalled) {
+  const Workplace place;
+  place.put_problem();
+  const Outcome one = place.corral("group matches.csv --external 'mine=cp group.csv {group} {matches}'");
+  EXPECT_EQ(one.status, 4);
+  EXPECT_THAT(one.err, HasSubstr("corral group: mine: ended with status 1; it said: cp: "));
+  const std::string mine = " --external \"mine=sh -c 'cp $(pwd)/group.csv \\\"\\$1\\\"' x {group} {matches}\"";
+  const Outcome printed = place.corral("group matches.csv" + mine);
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(printed.out, place.text("group.csv"));
+  const Outcome several = place.corral("group matches.csv -m ss,gc" + mine + " -o all --json");
+  EXPECT_EQ(several.status, 0) << several.err;
+  const auto json = several.json();
+  EXPECT_EQ(json[2]["method"], "mine");
+  EXPECT_EQ(json[2]["selected"], 60);
+  EXPECT_GT(json[2]["start_up_ms"], 0);
+  EXPECT_EQ(place.text("all/group_mine.csv"), place.text("group.csv"));
+  const Outcome run = place.corral("run --matches matches.csv --truth truth.txt --methods gc" + mine + " -o run --json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.json()["methods"][1]["precision"], 1);
+  EXPECT_THAT(run.json()["details"]["options"]["mine"]["command"].get<std::string>(), HasSubstr("{group}"));
+  EXPECT_EQ(place.text("run/group_mine.csv"), place.text("group.csv"));
+  EXPECT_EQ(place.corral("group matches.csv").status, 2);
+  EXPECT_EQ(place.corral("group matches.csv -m gc --external-timeout 0").status, 2);
+}
+
 TEST(Group, TooLargeIsAnAnswer) {
   const Workplace place;
   place.put_problem();

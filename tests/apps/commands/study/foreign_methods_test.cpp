@@ -187,6 +187,36 @@ TEST_F(ForeignMethods, AMergeTakesTheLatestAnswersAndNamesShardsOfOthers) {
   EXPECT_EQ(place_.text("run/summary.csv"), place_.text("whole/summary.csv"));
 }
 
+// A program that selects what GC does, by calling this one.
+const char* const kGcAgain = "#!/bin/sh\n'" CORRAL_PROGRAM "' group \"$1\" -m gc -o \"$2\"\n";
+
+TEST_F(ForeignMethods, AProgramThatIsCalledStandsBesideTheGroupers) {
+  place_.put("again.sh", kGcAgain);
+  const std::string call =
+      "evaluate tables.toml --data data --external 'again=sh again.sh {matches} {group}' "
+      "--external 'bad=sh -c \"exit 139\" {matches} {group}' --external-timeout 50 ";
+  const Outcome outcome = place_.corral(call + "-o run");
+  EXPECT_EQ(outcome.status, 4) << outcome.err;
+  for (const char* pair : {"p1", "p2", "p3", "p4", "p5"}) {
+    const StudyRecord own = record("run", pair, "gc"), again = record("run", pair, "again");
+    EXPECT_EQ(selected(again, "run"), selected(own, "run"));
+    EXPECT_EQ(again.refined.mean_error_pr, own.refined.mean_error_pr);
+    EXPECT_TRUE(again.time_ms && !again.stated_time_ms);
+    EXPECT_EQ(to_text(record("run", pair, "bad").status), "failed: bad: ended by signal 11 (status 139)");
+    EXPECT_EQ(own.status.state, MethodState::Refined) << "one record each, and nothing else";
+  }
+  EXPECT_THAT(place_.text("run/manifest.json"), HasSubstr("sh again.sh {matches} {group}"));
+  for (const char* shard : {"2/2", "1/2"}) place_.corral(call + "-o shards --shard " + shard);
+  ASSERT_EQ(place_.corral("merge shards").status, 4);
+  EXPECT_EQ(place_.text("shards/summary.csv"), place_.text("run/summary.csv"));
+  EXPECT_EQ(place_.corral(call + "-o run").status, 4);
+  EXPECT_FALSE(std::filesystem::exists(place_ / "run/units/1-of-1.2.journal")) << "nothing was left to do";
+  place_.put("again.sh", "echo 3 > \"$2\"\n");
+  place_.corral(call + "-o run");
+  EXPECT_EQ(record("run", "p2", "again").selected, 1) << "another program, another result";
+  EXPECT_EQ(place_.corral("evaluate tables.toml --data data --external gc=x -o other").status, 2);
+}
+
 TEST_F(ForeignMethods, WhatIsWrongInTheFileIsSaidBeforeAnythingRuns) {
   EXPECT_THAT(place_.corral("evaluate tables.toml --data data --methods none.toml -o run").err, HasSubstr("none.toml"));
   place_.put("methods.toml", "[[method]]\nname = \"gc\"\nlabels = \"a\"\n");
@@ -198,7 +228,7 @@ TEST_F(ForeignMethods, WhatIsWrongInTheFileIsSaidBeforeAnythingRuns) {
   place_.put("times.toml", "name = \"times\"\ndataset = \"tables\"\nattribute = \"table_size\"\nlevels = [50]\n");
   place_.put("methods.toml", "[[method]]\nname = \"other\"\nlabels = \"a.txt\"\n");
   outcome = place_.corral("evaluate times.toml --data data --methods methods.toml -o run");
-  EXPECT_THAT(outcome.err, HasSubstr("expected no --methods"));
+  EXPECT_THAT(outcome.err, HasSubstr("expected no methods of other programs"));
   EXPECT_FALSE(std::filesystem::exists(place_ / "run"));
 }
 
