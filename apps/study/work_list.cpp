@@ -80,6 +80,7 @@ std::string setting_label(const Experiment& experiment, const WorkUnit& unit, co
   const OptionValue length = keypoint_length(matching);
   MatchSettings usual;
   usual.resolution = matching.resolution;
+  usual.normals = NormalSide::Mesh;
   const bool is_usual =
       text.empty() && experiment.seed == Experiment().seed && matching.detector == usual.detector &&
       matching_text(matching) == matching_text(with_option(usual, usual.detector + "." + length.name, length.value));
