@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   corral::add_refine(app, action);
   corral::add_score(app, action);
   corral::add_tables(app, action);
+  corral::add_conformance(app, action);
   corral::add_perturb(app, action);
   corral::add_scan(app, action);
   corral::add_transform(app, action);

@@ -26,6 +26,7 @@ void add_group(CLI::App& app, Action& action);
 void add_refine(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
+void add_conformance(CLI::App& app, Action& action);
 void add_tables(CLI::App& app, Action& action);  ///< groupers, detectors, descriptors
 void add_perturb(CLI::App& app, Action& action);
 void add_transform(CLI::App& app, Action& action);
