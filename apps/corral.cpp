@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
       "'corral COMMAND --help' has examples.");
   corral::Action action;
   corral::add_run(app, action);
+  corral::add_register(app, action);
   corral::add_info(app, action);
   corral::add_match(app, action);
   corral::add_import(app, action);

@@ -25,6 +25,7 @@ void add_import(CLI::App& app, Action& action);
 void add_group(CLI::App& app, Action& action);
 void add_refine(CLI::App& app, Action& action);
 void add_score(CLI::App& app, Action& action);
+void add_register(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_conformance(CLI::App& app, Action& action);
 void add_tables(CLI::App& app, Action& action);  ///< groupers, detectors, descriptors

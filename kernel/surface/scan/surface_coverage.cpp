@@ -7,11 +7,9 @@
 namespace corral {
 namespace {
 
-constexpr Eigen::Index kMostAsked = 20000;
-
 /// Rows at even steps.
-Points some_of(const Points& rows) {
-  const Eigen::Index count = std::min(rows.rows(), kMostAsked);
+Points some_of(const Points& rows, int most) {
+  const Eigen::Index count = std::min<Eigen::Index>(rows.rows(), most);
   Points some(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) some.row(i) = rows.row(i * rows.rows() / count);
   return some;
@@ -19,15 +17,15 @@ Points some_of(const Points& rows) {
 
 }  // namespace
 
-SurfaceCoverage::Side::Side(const OrientedPoints& surface)
+SurfaceCoverage::Side::Side(const OrientedPoints& surface, int most_asked)
     : normals(surface.normals),
-      asked_points(some_of(surface.points)),
-      asked_normals(some_of(surface.normals)),
+      asked_points(some_of(surface.points, most_asked)),
+      asked_normals(some_of(surface.normals, most_asked)),
       tree(surface.points),
       points(surface.points) {}
 
-SurfaceCoverage::SurfaceCoverage(const OrientedPoints& source, const OrientedPoints& target)
-    : source_(source), target_(target) {}
+SurfaceCoverage::SurfaceCoverage(const OrientedPoints& source, const OrientedPoints& target, int most_asked)
+    : source_(source, most_asked), target_(target, most_asked) {}
 
 double SurfaceCoverage::operator()(const RigidTransform& target_from_source, double reach) const {
   return (covered(source_, target_, target_from_source, reach) +

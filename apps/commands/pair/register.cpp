@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// corral register: two scans without a truth, one pose.
+#include "apps/commands/command_files.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/evaluate_pair.h"
+#include "apps/pair/match_pair.h"
+#include "apps/pair/match_report.h"
+#include "apps/pair/register_pair.h"
+#include "apps/picture/pair_picture.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/progress.h"
+#include "apps/runtime/text_table.h"
+#include "apps/runtime/workers.h"
+#include "io/disk/file.h"
+#include "io/matches/matches_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/pose/transform_file.h"
+#include "kernel/surface/mesh/perturbation.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::string source, target, matches, output, apply, picture;
+  TruthSettings truth;
+  MatchSettings match;
+  std::vector<std::string> set;
+  bool drop_stray = false, json = false;
+};
+
+struct Surfaces {
+  Mesh source, target;
+};
+
+std::vector<std::string> outputs_of(const Settings& settings) {
+  return {settings.output, settings.apply, settings.picture};
+}
+
+void check(const Settings& settings) {
+  if (settings.source.empty() != settings.target.empty()) throw UsageError("target: expected two meshes");
+  if (settings.source.empty() && settings.matches.empty())
+    throw UsageError("expected two meshes, or --matches with a table of matches");
+  if (settings.source.empty() && !(settings.apply.empty() && settings.picture.empty()))
+    throw UsageError("--apply and --picture: need the two meshes");
+  if (!settings.apply.empty()) check_ply_name(settings.apply);
+  if (!settings.picture.empty() && settings.picture.substr(std::max<std::size_t>(settings.picture.size(), 4) - 4) != ".png")
+    throw UsageError("--picture " + settings.picture + ": expected a name that ends in .png");
+  check_usage(settings.match);
+  keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, outputs_of(settings));
+  for (const std::string& output : outputs_of(settings))
+    if (!output.empty()) check_writable(output);
+}
+
+Json to_json(const ProposedPose& pose) {
+  return {{"method", pose.method},
+          {"target_from_source", corral::to_json(pose.target_from_source)},
+          {"support", pose.support},
+          {"score", pose.score},
+          {"overlap", pose.overlap},
+          {"rms_pr", pose.rms_pr},
+          {"moved_pr", pose.moved_pr},
+          {"in_front", pose.in_front}};
+}
+
+Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors) {
+  Json poses = Json::array(), signals = nullptr, error = nullptr;
+  for (const ProposedPose& pose : found.poses) poses.push_back(to_json(pose));
+  if (found.signals) {
+    signals = Json::object();
+    for (std::size_t i = 0; i < kSignals; ++i) signals[kSignalNames[i]] = (*found.signals)[i];
+  }
+  if (errors)
+    error = {{"rotation_error_deg", errors->rotation_error_deg},
+             {"translation_error_pr", errors->translation_error_pr},
+             {"mean_error_pr", errors->points ? Json(errors->points->mean_pr) : Json(nullptr)},
+             {"registers", is_registered(errors)}};
+  return {{"matches", matches}, {"methods", found.methods}, {"poses", poses}, {"signals", signals}, {"errors", error}};
+}
+
+std::string in_words(const Registration& found, bool has_surfaces) {
+  if (found.poses.empty()) return "no pose: no grouper found one\n";
+  TextTable table(has_surfaces ? std::vector<std::string>{"pose", "grouper", "matches", "coverage", "overlap", "RMS pr", "in front"}
+                               : std::vector<std::string>{"pose", "grouper", "matches", "score"});
+  constexpr std::size_t kShown = 3;
+  for (std::size_t i = 0; i < std::min(kShown, found.poses.size()); ++i) {
+    const ProposedPose& pose = found.poses[i];
+    std::vector<std::string> row = {i == 0 ? "best" : std::to_string(i + 1), pose.method, std::to_string(pose.support),
+                                    fixed(pose.score, 3)};
+    if (has_surfaces) row.insert(row.end(), {fixed(pose.overlap, 3), fixed(pose.rms_pr, 3), fixed(pose.in_front, 3)});
+    table.add(row);
+  }
+  return table.str();
+}
+
+void draw(const Settings& settings, const Surfaces& surfaces, const RigidTransform& pose) {
+  PairScene scene;
+  scene.truth = pose;
+  scene.source = painted_surface(surfaces.source);
+  scene.target = painted_surface(surfaces.target);
+  write_file(settings.picture, png_bytes(alignment_pictures(scene, {{"registered", pose}}, 1200).front()));
+}
+
+int register_two(Settings settings) {
+  const OptionsByName options = parse_set(settings.set);
+  require_in_use(options, settings.match.in_use());
+  settings.match.options = surface_part(options);
+  check(settings);
+  std::optional<RigidTransform> truth;
+  if (!settings.truth.empty()) truth = read_truth(settings.truth);
+  std::optional<Surfaces> surfaces;
+  if (!settings.source.empty())
+    surfaces = {read_input(settings.source, settings.drop_stray), read_input(settings.target, settings.drop_stray)};
+  MatchedPair pair;
+  Registration found;
+  {
+    Progress progress(match_stages(settings.match) + registration_steps());
+    const auto begin = [&](const std::string& stage) { progress.begin(stage); };
+    if (settings.matches.empty())
+      pair = match_pair(surfaces->source, surfaces->target, settings.match, {begin});
+    else
+      pair.matches = read_matches(settings.matches);
+    std::optional<RegisteredSurfaces> given;
+    if (surfaces) {
+      given.emplace(RegisteredSurfaces{surfaces->source, surfaces->target, std::nullopt});
+      if (settings.match.sensor.size() == 3)
+        given->sensor = ViewOptions{{settings.match.sensor[0], settings.match.sensor[1], settings.match.sensor[2]}, {}};
+    }
+    found = register_pair(pair.matches, given, workers(settings.match.threads), begin);
+  }
+  for (const std::string& line : advice(pair.report)) say(line);
+  std::optional<PoseErrors> errors;
+  if (truth && !found.poses.empty()) {
+    const PairTruth right = surfaces ? pair_truth(surfaces->source, surfaces->target, *truth, pair.matches.resolution, 4)
+                                     : table_truth(pair.matches, *truth, 4);
+    errors = pose_errors(found.poses.front().target_from_source, right, pair.matches.resolution);
+  }
+  if (!found.poses.empty()) {
+    const RigidTransform& pose = found.poses.front().target_from_source;
+    if (!settings.output.empty()) write_file(settings.output, transform_text(pose));
+    if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
+    if (!settings.picture.empty()) draw(settings, *surfaces, pose);
+  }
+  if (settings.json)
+    put("", to_json(found, pair.matches.size(), errors));
+  else
+    put("", in_words(found, surfaces.has_value()));
+  return found.poses.empty() ? kPartial : kOk;
+}
+
+}  // namespace
+
+void add_register(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand("register", "Two scans without a truth: the pose that lays one on the other");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("source", settings->source, "The surface that is moved")->type_name("FILE");
+  command->add_option("target", settings->target, "The surface that stays")->type_name("FILE");
+  command
+      ->add_option("--matches", settings->matches,
+                   "A table of matches instead of the descriptors' own, alone or beside the two meshes")
+      ->type_name("FILE");
+  command->add_option("-o,--output", settings->output, "The pose, 4x4, target from source")->type_name("FILE");
+  command->add_option("--apply", settings->apply, "The source, moved onto the target: a PLY file")->type_name("FILE");
+  command->add_option("--picture", settings->picture, "A picture of both under the pose")->type_name("FILE.png");
+  add_truth_options(*command, settings->truth, ": adds the errors of the pose to --json");
+  command->add_flag("--json", settings->json, "Poses with what speaks for each, as JSON");
+  add_match_options(*command, settings->match);
+  add_drop_stray(*command, settings->drop_stray);
+  add_set_option(*command, settings->set);
+  command->footer(
+      "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole surfaces;\n"
+      "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from there, and poses\n"
+      "are dropped that put points in front of what the other one saw.\n"
+      "Examples:\n  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
+      "  corral register --matches matches.csv -o pose.txt");
+  command->callback([settings, &action] { action = [settings] { return register_two(*settings); }; });
+}
+
+}  // namespace corral
