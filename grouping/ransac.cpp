@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/ransac.h"
 
+#include <hwy/base.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "grouping/columns/compatibility.h"
 #include "grouping/columns/filter_loops.h"
 #include "grouping/pose/pose_choice.h"
+#include "grouping/pose/possible_support.h"
+#include "grouping/pose/triple_filter.h"
 #include "grouping/pose/triple_sampler.h"
 #include "kernel/triangle_fit.h"
 
@@ -16,14 +21,6 @@ namespace {
 
 /// Smallest usable area of a sampled triangle in pr^2; below it the pose is decided by noise.
 constexpr double kDegenerateAreaPr2 = 1e-3;
-
-constexpr int kBatch = 128;  ///< iterations that are drawn and fitted together
-
-/// The motion through one of the triples drawn.
-struct Hypothesis {
-  int iteration;
-  RigidTransform target_from_source;
-};
 
 PoseRule rule_of(const RansacOptions& options) {
   PoseRule rule;
@@ -35,6 +32,11 @@ PoseRule rule_of(const RansacOptions& options) {
   return rule;
 }
 
+struct DrawnTriple {
+  Triple rows{};
+  int iteration = 0;
+};
+
 class Search {
  public:
   Search(const CorrespondenceSet& matches, const RansacOptions& options)
@@ -42,20 +44,22 @@ class Search {
         options_(options),
         tolerance_(options.tolerance_pr * matches.resolution),
         smallest_area_(kDegenerateAreaPr2 * matches.resolution * matches.resolution),
-        table_(matches),
+        uniform_(matches.size()),
+        support_(matches, tolerance_, smallest_area_),
+        filter_(support_.rows(), tolerance_, smallest_area_),
         scorer_(matches, options.score, tolerance_),
         choice_(matches, rule_of(options)),
         last_iteration_(options.iterations) {
-    hypotheses_.reserve(kBatch);
     if (options.sampling == TripleSampling::Prosac) progressive_.emplace(matches, options.iterations);
   }
 
   GroupingResult run() {
     RandomStream random(options_.seed);
-    for (int first = 0; first < last_iteration_; first += kBatch) {
-      draw(random, first, std::min(kBatch, last_iteration_ - first));
-      judge();
+    while (iteration_ < last_iteration_ && support_.rows().rows() > hopeless()) {
+      draw(random);
+      sift();
     }
+    judge();
     return choice_.finish();
   }
 
@@ -63,7 +67,7 @@ class Search {
   Triple draw_one(RandomStream& random) {
     if (progressive_) return progressive_->draw(random);
     return options_.sampling == TripleSampling::Compatible ? draw_compatible_triple(random, matches_, tolerance_)
-                                                           : draw_triple(random, matches_.size());
+                                                           : uniform_.draw(random);
   }
 
   /// Whether every edge has the same length on both sides, as far as the option asks for it.
@@ -76,62 +80,74 @@ class Search {
     return true;
   }
 
-  /// The usable hypotheses of the next iterations, in order.
-  void draw(RandomStream& random, int first, int count) {
-    hypotheses_.clear();
-    int iterations[kLanes];
-    int filled = 0;
-    const auto fit = [&] {
-      for (int lane = filled; lane < kLanes; ++lane) set(lane);  // the lanes left over repeat the last one
-      fit_triangles(source_, target_, smallest_area_, motions_);
-      for (int lane = 0; lane < filled; ++lane)
-        if (motions_.is_usable(lane)) hypotheses_.push_back({iterations[lane], motions_.get(lane)});
-      filled = 0;
-    };
-    for (int iteration = first; iteration < first + count; ++iteration) {
+  /// The next triples.
+  void draw(RandomStream& random) {
+    drawn_ = 0;
+    while (drawn_ < kFloatLanes && iteration_ < last_iteration_) {
       const Triple triple = draw_one(random);
-      if (!is_rigid(triple)) continue;
-      triple_ = triple;
-      set(filled);
-      iterations[filled] = iteration;
-      if (++filled == kLanes) fit();
+      const int iteration = iteration_++;
+      if (is_rigid(triple)) triples_[drawn_++] = {triple, iteration};
     }
-    if (filled > 0) fit();
-  }
-  void set(int lane) {
-    source_.set(lane, matches_.source_points, triple_);
-    target_.set(lane, matches_.target_points, triple_);
   }
 
-  /// Keeps the best hypothesis. Floats count the matches that possibly agree, first in one direction, then in all; no score
-  /// exceeds their number. Most hypotheses have too few of them and are never judged exactly.
+  /// A pose needs more matches in agreement to be chosen; -1 where all poses are needed. No score exceeds their number.
+  int hopeless() const {
+    return choice_.needs_all() ? -1 : static_cast<int>(std::floor(std::max(choice_.best_score(), 0.0)));
+  }
+
+  /// Those of the triples drawn that can win are fitted, eight together.
+  void sift() {
+    for (unsigned possible = possible_triples() & ((1u << drawn_) - 1); possible != 0; possible &= possible - 1) {
+      sifted_[sifted_count_++] = triples_[hwy::Num0BitsBelowLS1Bit_Nonzero32(possible)];
+      if (sifted_count_ == kLanes) judge();
+    }
+  }
+
+  unsigned possible_triples() {
+    if (choice_.needs_all() || !filter_.is_sharp()) return ~0u;
+    LaneTriangles source[2], target[2];
+    for (int k = 0; k < kFloatLanes; ++k) {
+      source[k / kLanes].set(k % kLanes, matches_.source_points, triples_[k].rows);
+      target[k / kLanes].set(k % kLanes, matches_.target_points, triples_[k].rows);
+    }
+    for (int half = 0; half < 2; ++half) filter_.set(source[half], target[half], half * kLanes);
+    const int spare = support_.rows().rows() - hopeless();  // a pose that misses so many is hopeless
+    return filter_.possible(support_.rows(), hopeless(), spare + spare / 4 + 32);
+  }
+
+  void set(int lane, const DrawnTriple& drawn) {
+    source_.set(lane, matches_.source_points, drawn.rows);
+    target_.set(lane, matches_.target_points, drawn.rows);
+  }
+
+  /// Keeps the best pose. Floats count the matches that possibly agree: most poses have too few and are never judged exactly.
   void judge() {
-    const int count = static_cast<int>(hypotheses_.size());
-    for (int first = 0; first < count; first += kPoseTile) {
-      PoseFilter poses[kPoseTile];
-      int near_plane[kPoseTile];
-      for (int k = 0; k < kPoseTile; ++k)  // those left over repeat the last one
-        poses[k] = PoseFilter(table_, at(std::min(first + k, count - 1)).target_from_source, tolerance_);
-      count_near_first_plane(table_, poses, near_plane);
-      for (int k = 0; k < kPoseTile && first + k < count; ++k) {
-        const Hypothesis& hypothesis = at(first + k);
-        if (hypothesis.iteration >= last_iteration_) return;
-        const int hopeless =
-            choice_.needs_all() ? -1 : static_cast<int>(std::floor(std::max(choice_.best_score(), 0.0)));
-        if (near_plane[k] <= hopeless || count_near(table_, poses[k], near_plane[k], hopeless) <= hopeless) continue;
-        offer(hypothesis);
-      }
+    for (int lane = 0; lane < kLanes; ++lane) set(lane, sifted_[lane]);  // lanes left over hold earlier triples
+    fit_triangles(source_, target_, smallest_area_, motions_);
+    const LaneFilters filters(support_.rows(), motions_, tolerance_);
+    const int best = hopeless();
+    const int count = std::exchange(sifted_count_, 0);
+    for (int lane = 0; lane < count; ++lane) {
+      if (!motions_.is_usable(lane) || sifted_[lane].iteration >= last_iteration_) continue;
+      if (!choice_.needs_all() && count_near(support_.rows(), filters.get(lane), hopeless()) <= hopeless()) continue;
+      offer(motions_.get(lane), sifted_[lane].iteration);
     }
+    if (hopeless() > best && is_worth_pruning()) support_.exceed(hopeless(), choice_.best_residuals());
   }
 
-  void offer(const Hypothesis& hypothesis) {
-    if (!choice_.offer(hypothesis.target_from_source)) return;
-    RigidTransform best = hypothesis.target_from_source;
+  /// Whether matches that few others keep their distance to are looked for: in time quadratic in their number.
+  bool is_worth_pruning() const {
+    return hopeless() >= matches_.size() / 8 && matches_.size() <= (last_iteration_ - iteration_) / 4;
+  }
+
+  void offer(const RigidTransform& pose, int iteration) {
+    if (!choice_.offer(pose)) return;
+    RigidTransform best = pose;
     if (options_.local_rounds > 0) {
       best = refit(matches_, best, scorer_, tolerance_, options_.local_rounds);
       choice_.offer(best);
     }
-    if (options_.confidence > 0) stop_when_confident(best, hypothesis.iteration);
+    if (options_.confidence > 0) stop_when_confident(best, iteration);
   }
 
   /// The number of triples of which, with this probability, one holds only correct matches, if those that agree with the
@@ -144,21 +160,21 @@ class Search {
     if (needed < last_iteration_) last_iteration_ = std::max(iteration + 1, static_cast<int>(std::ceil(needed)));
   }
 
-  const Hypothesis& at(int index) const { return hypotheses_[static_cast<std::size_t>(index)]; }
-
   const CorrespondenceSet& matches_;
   const RansacOptions& options_;
   const double tolerance_, smallest_area_;
-  const FilterTable table_;
+  const UniformSampler uniform_;
+  PossibleSupport support_;
+  TripleFilter filter_;
   const PoseScorer scorer_;
   PoseChoice choice_;
   std::optional<ProgressiveSampler> progressive_;
-  std::vector<Hypothesis> hypotheses_;
   std::vector<double> residuals_;
-  Triple triple_{};
+  DrawnTriple triples_[kFloatLanes], sifted_[kLanes];
   LaneTriangles source_, target_;
   LaneMotions motions_;
-  int last_iteration_;
+  int drawn_ = 0, sifted_count_ = 0;
+  int iteration_ = 0, last_iteration_;
 };
 
 }  // namespace
@@ -175,9 +191,9 @@ GroupingResult group_by_ransac(const CorrespondenceSet& matches, const RansacOpt
 
 double working_memory(int matches, const RansacOptions& options) {
   const bool is_progressive = options.sampling == TripleSampling::Prosac;
-  return FilterTable::memory(matches) +
+  return PossibleSupport::memory(matches) +
          PoseChoice::memory(matches, (options.local_rounds > 0 ? 2.0 : 1.0) * options.iterations, rule_of(options)) +
-         (is_progressive ? ProgressiveSampler::memory(matches) : 0) + 200.0 * kBatch;
+         (is_progressive ? ProgressiveSampler::memory(matches) : 0) + 8192;
 }
 
 }  // namespace corral

@@ -15,18 +15,37 @@ std::uint64_t mix(std::uint64_t word) {
   return word ^ (word >> 31);
 }
 
+/// The next word of the state after `first`, from the one that follows it and one that lies farther.
+std::uint64_t twisted(std::uint64_t first, std::uint64_t second, std::uint64_t far) {
+  const std::uint64_t joined = (first & 0xFFFFFFFF80000000u) | (second & 0x7FFFFFFFu);
+  return far ^ (joined >> 1) ^ ((0 - (joined & 1)) & 0xB5026F5AA96619E9u);
+}
+
+std::uint64_t tempered(std::uint64_t word) {
+  word ^= (word >> 29) & 0x5555555555555555u;
+  word ^= (word << 17) & 0x71D67FFFEDA60000u;
+  word ^= (word << 37) & 0xFFF7EEE000000000u;
+  return word ^ (word >> 43);
+}
+
 }  // namespace
 
-RandomStream::RandomStream(std::uint64_t seed) : engine_(mix(seed)) {}
-
-std::uint64_t RandomStream::below(std::uint64_t count) {
-  std::uint64_t word = engine_();
-  if (word < count) {  // only then can the word be one of the first 2^64 mod count, which would favour small values
-    const std::uint64_t rejected = (0 - count) % count;
-    while (word < rejected) word = engine_();
-  }
-  return word % count;
+MersenneTwister::MersenneTwister(std::uint64_t seed) {
+  state_[0] = seed;
+  for (std::size_t i = 1; i < kWords; ++i)
+    state_[i] = 6364136223846793005u * (state_[i - 1] ^ (state_[i - 1] >> 62)) + i;
 }
+
+void MersenneTwister::refill() {
+  constexpr std::size_t kFar = kWords / 2;
+  for (std::size_t i = 0; i < kFar; ++i) state_[i] = twisted(state_[i], state_[i + 1], state_[i + kFar]);
+  for (std::size_t i = kFar; i + 1 < kWords; ++i) state_[i] = twisted(state_[i], state_[i + 1], state_[i - kFar]);
+  state_[kWords - 1] = twisted(state_[kWords - 1], state_[0], state_[kFar - 1]);
+  for (std::size_t i = 0; i < kWords; ++i) words_[i] = tempered(state_[i]);
+  used_ = 0;
+}
+
+RandomStream::RandomStream(std::uint64_t seed) : engine_(mix(seed)) {}
 
 double RandomStream::uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 

@@ -91,53 +91,27 @@ HWY_FLATTEN void count_consistent(const ConsistencyFilter& filter, int* counts) 
   }
 }
 
-HWY_FLATTEN void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile],
-                                        int (&counts)[kPoseTile]) {
-  const Columns columns(table);
-  const int end = table.padded_rows();
-  const Floats one = Floats::fill(1);
-  Floats r[kPoseTile][3], t[kPoseTile], reach[kPoseTile], count[kPoseTile];
-  for (int k = 0; k < kPoseTile; ++k) {
-    for (int axis = 0; axis < 3; ++axis) r[k][axis] = Floats::fill(poses[k].rotation[axis]);
-    t[k] = Floats::fill(poses[k].translation[0]);
-    reach[k] = Floats::fill(poses[k].reach);
-    count[k] = Floats::fill(0);
-  }
-  for (int row = 0; row < end; row += kFloatLanes) {
-    const auto p = Point::load(columns.source, row);
-    const Floats x = Floats::load(columns.target[0] + row);
-    for (int k = 0; k < kPoseTile; ++k) {
-      const Floats residual = r[k][0] * p.x + r[k][1] * p.y + r[k][2] * p.z + (t[k] - x);
-      count[k] = counted(magnitude(residual) <= reach[k], count[k], one);
-    }
-  }
-  for (int k = 0; k < kPoseTile; ++k) counts[k] = total(count[k]);
-}
-
-HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
-  constexpr int kStretch = 16 * kFloatLanes;  // rows between two checks of the count
+HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless) {
+  constexpr int kStretch = 4 * kFloatLanes;  // rows between two checks of the count
   const Columns columns(table);
   const int end = table.padded_rows();
   int near = 0;
-  const Floats one = Floats::fill(1), reach = Floats::fill(pose.reach), limit = Floats::fill(pose.possible);
+  const Floats one = Floats::fill(1), limit = Floats::fill(pose.possible);
   Floats r[9], t[3];
   for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
   for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
-  int left_in_plane = near_plane;
-  for (int first = 0; first < end && near + left_in_plane > hopeless; first += kStretch) {
-    Floats in_plane = Floats::fill(0), inside = Floats::fill(0);
+  for (int first = 0; first < end; first += kStretch) {
+    if (near + table.rows() - first <= hopeless) return hopeless;
+    Floats inside = Floats::fill(0);
     for (int row = first; row < end && row < first + kStretch; row += kFloatLanes) {
       const auto p = Point::load(columns.source, row), q = Point::load(columns.target, row);
       const Floats x = r[0] * p.x + r[1] * p.y + r[2] * p.z + (t[0] - q.x);
       const Floats y = r[3] * p.x + r[4] * p.y + r[5] * p.z + (t[1] - q.y);
       const Floats z = r[6] * p.x + r[7] * p.y + r[8] * p.z + (t[2] - q.z);
-      in_plane = counted(magnitude(x) <= reach, in_plane, one);
       inside = counted(x * x + y * y + z * z <= limit, inside, one);
     }
     near += total(inside);
-    left_in_plane -= total(in_plane);
   }
-  if (near + left_in_plane <= hopeless) near = hopeless;
   return near;
 }
 
@@ -286,7 +260,6 @@ HWY_AFTER_NAMESPACE();
 namespace corral {
 
 HWY_EXPORT(count_consistent);
-HWY_EXPORT(count_near_first_plane);
 HWY_EXPORT(add_near);
 HWY_EXPORT(count_near);
 HWY_EXPORT(compare_ratios);
@@ -300,17 +273,13 @@ void count_consistent(const ConsistencyFilter& filter, int* counts) {
   HWY_DYNAMIC_DISPATCH(count_consistent)(filter, counts);
 }
 
-void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]) {
-  HWY_DYNAMIC_DISPATCH(count_near_first_plane)(table, poses, counts);
-}
-
 void add_near(const FilterTable& table, int first, int last, const PoseFilter (&poses)[kPoseTile],
               int (&counts)[kPoseTile]) {
   HWY_DYNAMIC_DISPATCH(add_near)(table, first, last, poses, counts);
 }
 
-int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless) {
-  return HWY_DYNAMIC_DISPATCH(count_near)(table, pose, near_plane, hopeless);
+int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless) {
+  return HWY_DYNAMIC_DISPATCH(count_near)(table, pose, hopeless);
 }
 
 void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,

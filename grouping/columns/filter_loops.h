@@ -14,15 +14,12 @@ namespace corral {
 /// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included.
 void count_consistent(const ConsistencyFilter& filter, int* counts);
 
+/// For how many rows the residual is possibly below the tolerance; any number up to `hopeless` once it is certain that
+/// there are no more.
+int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless);
+
 /// How many poses are evaluated together.
 constexpr int kPoseTile = 4;
-
-/// counts[k]: for how many rows the first component of the residual under pose k is possibly below the tolerance.
-void count_near_first_plane(const FilterTable& table, const PoseFilter (&poses)[kPoseTile], int (&counts)[kPoseTile]);
-
-/// For how many rows the residual is possibly below the tolerance; any number up to `hopeless` once it is certain that
-/// there are no more. `near_plane` is the count above for this pose.
-int count_near(const FilterTable& table, const PoseFilter& pose, int near_plane, int hopeless);
 
 /// counts[k], plus for how many rows of first .. last - 1, whole numbers of lanes, the residual under pose k is possibly below
 /// the tolerance. For poses by the hundred: a stretch of rows that fits the cache is read for all of them.

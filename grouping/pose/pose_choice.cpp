@@ -147,7 +147,7 @@ PoseChoice::PoseChoice(const CorrespondenceSet& matches, const PoseRule& rule)
 double PoseChoice::memory(int rows, double hypotheses, const PoseRule& rule) {
   const bool needs_all = rule.keep > 0 || rule.score == PoseScore::Fs;
   const double points = rule.score == PoseScore::Fs ? 80.0 * rows : 0, moved = rule.keep > 0 ? 96.0 * rows : 0;
-  return FilterTable::memory(rows) + PoseScorer::memory(rows) + 32.0 * rows + points + moved +
+  return FilterTable::memory(rows) + PoseScorer::memory(rows) + 40.0 * rows + points + moved +
          (needs_all ? 3 * sizeof(Judged) * hypotheses : 0);
 }
 
@@ -157,6 +157,7 @@ bool PoseChoice::offer(const RigidTransform& target_from_source) {
   if (needs_all()) poses_.push_back(judged);
   if (best_ && !is_better(judged, *best_)) return false;
   best_ = judged;
+  best_residuals_ = residuals_;
   return true;
 }
 
@@ -169,7 +170,7 @@ PoseChoice::Judged PoseChoice::judge(const RigidTransform& target_from_source) {
 bool PoseChoice::is_hopeless(const RigidTransform& target_from_source) const {
   const int hopeless = static_cast<int>(rule_.first_wins ? std::floor(best_->score) : std::ceil(best_->score) - 1);
   const PoseFilter pose(table_, target_from_source, tolerance_);
-  return count_near(table_, pose, matches_.size(), hopeless) <= hopeless;
+  return count_near(table_, pose, hopeless) <= hopeless;
 }
 
 void PoseChoice::judge_by_distances() {

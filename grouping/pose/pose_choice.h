@@ -53,6 +53,9 @@ class PoseChoice {
   /// Above this score a hypothesis is the best so far; -1 before the first.
   double best_score() const { return best_ ? best_->score : -1; }
 
+  /// Those of the best so far.
+  const std::vector<double>& best_residuals() const { return best_residuals_; }
+
   /// The next hypothesis; says whether it is the best so far (by Fs: by Inliers). A pose that cannot be chosen is dropped as soon as floats are certain of it, unless `keep` or
   /// Fs need them all.
   bool offer(const RigidTransform& target_from_source);
@@ -80,7 +83,7 @@ class PoseChoice {
   const double tolerance_;
   const FilterTable table_;
   const PoseScorer scorer_, mae_;
-  std::vector<double> residuals_;
+  std::vector<double> residuals_, best_residuals_;
   std::optional<Judged> best_;
   std::vector<Judged> poses_;  ///< all, if they are needed
 };

@@ -32,11 +32,10 @@ int draw_other(RandomStream& random, int rows, const Triple& triple, std::size_t
 
 }  // namespace
 
-Triple draw_triple(RandomStream& random, int rows) {
-  Triple triple{};
-  for (std::size_t place = 0; place < 3; ++place) triple[place] = draw_other(random, rows, triple, place);
-  return triple;
-}
+UniformSampler::UniformSampler(int rows)
+    : first_(static_cast<std::uint64_t>(rows)),
+      second_(static_cast<std::uint64_t>(rows - 1)),
+      third_(static_cast<std::uint64_t>(rows - 2)) {}
 
 Triple draw_compatible_triple(RandomStream& random, const CorrespondenceSet& matches, double tolerance) {
   Triple triple{draw(random, matches.size())};
@@ -72,7 +71,7 @@ Triple ProgressiveSampler::draw(RandomStream& random) {
   }
   Triple triple;
   if (drawn_ > last_) {
-    triple = draw_triple(random, taking_part_);
+    triple = UniformSampler(taking_part_).draw(random);
   } else {
     for (std::size_t place = 0; place < 2; ++place) triple[place] = draw_other(random, taking_part_ - 1, triple, place);
     triple[2] = taking_part_ - 1;

@@ -10,8 +10,25 @@ namespace corral {
 
 using Triple = std::array<int, 3>;
 
-/// Three distinct rows, every ordered triple equally likely.
-Triple draw_triple(RandomStream& random, int rows);
+/// Three distinct rows of so many, every ordered triple equally likely.
+class UniformSampler {
+ public:
+  explicit UniformSampler(int rows);
+
+  /// Without a branch that chance decides.
+  Triple draw(RandomStream& random) const {
+    const int a = static_cast<int>(random.below(first_));
+    int b = static_cast<int>(random.below(second_)), c = static_cast<int>(random.below(third_));
+    b += b >= a;
+    const int smaller = a ^ ((a ^ b) & -(b < a)), larger = a ^ b ^ smaller;
+    c += c >= smaller;
+    c += c >= larger;
+    return {a, b, c};
+  }
+
+ private:
+  WholeRange first_, second_, third_;
+};
 
 /// Three distinct rows of which the second and the third are drawn again, up to ten times each, until every distance to those
 /// before differs on the two sides by less than the tolerance (mesh units).

@@ -60,7 +60,7 @@ Kernel residual_counting(const CorrespondenceSet& matches) {
     poses->emplace_back(*table, pose, 5 * matches.resolution);
   }
   return {"residuals", 27.0 * kPoses * matches.size(), [table, poses] {
-            for (const PoseFilter& pose : *poses) benchmark::DoNotOptimize(count_near(*table, pose, table->rows(), -1));
+            for (const PoseFilter& pose : *poses) benchmark::DoNotOptimize(count_near(*table, pose, -1));
           }};
 }
 

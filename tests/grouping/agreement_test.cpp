@@ -174,6 +174,28 @@ TEST(Agreement, RansacOnTheSameTriples) {
   }
 }
 
+/// Two hundred tables, of shares from 1 to 95 % and with noise up to the tolerance: matches that cannot take part in a better
+/// pose are left out, triples that cannot win are not fitted, and the search may end before its last triple.
+TEST(Agreement, RansacLeavesOutWhatCannotWin) {
+  const std::vector<int> sizes = {20, 40, 70, 100, 150, 250};
+  const std::vector<double> ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95};
+  std::vector<NamedTable> on;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SyntheticOptions problem;
+    problem.matches = sizes[seed % sizes.size()];
+    problem.inlier_ratio = ratios[seed / 2 % ratios.size()];
+    problem.noise_pr = 0.5 * static_cast<double>(seed % 7);
+    problem.seed = seed;
+    const CorrespondenceSet matches = make_synthetic_problem(problem).matches;
+    on.push_back({"table " + std::to_string(seed), seed % 3 == 0 ? testing::made_harsh(matches) : matches});
+  }
+  RansacOptions options;
+  options.iterations = 1500;
+  expect_identical(group_by_ransac, reference::ransac, options, on);
+  options.iterations = 6000;
+  expect_identical(group_by_ransac, reference::ransac, options, {named_table("smooth", 1000, 0.4, 1)});
+}
+
 /// The areas of the triangles straddle the smallest usable one, on the two sides independently.
 TEST(Agreement, RansacOnSmallTriangles) {
   RansacOptions options;

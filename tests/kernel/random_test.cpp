@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <set>
+#include <vector>
 
 #include "kernel/rigid_transform.h"
 
@@ -41,6 +43,31 @@ TEST(RandomStream, FirstDrawsAreFixed) {
   EXPECT_NEAR(rotation(0, 0), 0.90333307471978386, 1e-14);
   EXPECT_NEAR(rotation(2, 1), -0.52975004491533695, 1e-14);
   EXPECT_EQ(random.below(1000000), 227746u);  // every draw above took its fixed share of the stream
+}
+
+TEST(RandomStream, EngineIsThatOfTheStandard) {
+  for (const std::uint64_t seed : {0ull, 1ull, 5489ull, ~0ull}) {
+    MersenneTwister ours(seed);
+    std::mt19937_64 standard(seed);
+    for (int draw = 0; draw < 2000; ++draw) ASSERT_EQ(ours(), standard()) << seed << " " << draw;
+  }
+}
+
+TEST(RandomStream, RemaindersAreThoseOfDivisions) {
+  std::mt19937_64 words(1);
+  const std::uint64_t most = ~std::uint64_t{0};
+  const std::vector<std::uint64_t> counts = {1,        2,   3, 1000, 0xFFFFFFFF, 0x100000000, 0x8000000000000001,
+                                             most - 1, most};
+  for (const std::uint64_t count : counts) {
+    const WholeRange range(count);
+    for (const std::uint64_t word : {std::uint64_t{0}, count - 1, count, 2 * count - 1, most / count * count - 1,
+                                     most / count * count, most - 1, most})
+      EXPECT_EQ(range.remainder(word), word % count) << word << " " << count;
+    for (int draw = 0; draw < 1000; ++draw) {
+      const std::uint64_t word = words();
+      ASSERT_EQ(range.remainder(word), word % count) << word << " " << count;
+    }
+  }
 }
 
 TEST(RandomStream, SeedDecides) {

@@ -156,13 +156,8 @@ TEST(Filter, ResidualsAreBracketed) {
               (pose * matches.source_points.row(row).transpose() - matches.target_points.row(row).transpose()).norm() <
               tolerance;
         const PoseFilter poses[kPoseTile] = {filter, filter, filter, filter};
-        int near_plane[kPoseTile];
-        count_near_first_plane(table, poses, near_plane);
-        EXPECT_GE(near_plane[0], expected);
-        EXPECT_EQ(near_plane[0], near_plane[kPoseTile - 1]);
-        const int near = count_near(table, filter, near_plane[0], -1);
+        const int near = count_near(table, filter, -1);
         EXPECT_GE(near, expected);
-        EXPECT_LE(near, near_plane[0]);
         int in_parts[kPoseTile] = {};
         add_near(table, 0, kFloatLanes, poses, in_parts);
         EXPECT_LE(in_parts[0], near);
@@ -170,7 +165,7 @@ TEST(Filter, ResidualsAreBracketed) {
         EXPECT_EQ(in_parts[0], in_parts[kPoseTile - 1]);
         EXPECT_EQ(in_parts[0], near);
         for (const int hopeless : {0, expected - 1, expected, expected + 3}) {
-          const int stopped = count_near(table, filter, near_plane[0], hopeless);
+          const int stopped = count_near(table, filter, hopeless);
           EXPECT_EQ(stopped <= hopeless, near <= hopeless);
           EXPECT_EQ(std::max(stopped, hopeless), std::max(near, hopeless));
         }

@@ -22,7 +22,7 @@ bool is_distinct(const Triple& triple) { return std::set<int>(triple.begin(), tr
 TEST(TripleSampler, EveryOrderedTripleIsAsLikely) {
   RandomStream random(1);
   std::map<Triple, int> counts;
-  for (int draw = 0; draw < 60000; ++draw) ++counts[draw_triple(random, 5)];
+  for (int draw = 0; draw < 60000; ++draw) ++counts[UniformSampler(5).draw(random)];
   EXPECT_EQ(counts.size(), 60U);
   for (const auto& [triple, count] : counts) {
     EXPECT_TRUE(is_distinct(triple));
@@ -45,7 +45,7 @@ TEST(TripleSampler, CompatibleTriplesKeepTheirDistancesFarMoreOften) {
     const Triple triple = draw_compatible_triple(random, matches, 5);
     EXPECT_TRUE(is_distinct(triple));
     compatible += rigid(triple);
-    uniform += rigid(draw_triple(random, matches.size()));
+    uniform += rigid(UniformSampler(matches.size()).draw(random));
   }
   EXPECT_GT(compatible, 5 * uniform);
 }
