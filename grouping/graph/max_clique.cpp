@@ -4,6 +4,7 @@
 #include <hwy/base.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "grouping/graph/core_numbers.h"
 #include "grouping/graph/induced_subgraph.h"
@@ -12,6 +13,12 @@ namespace corral {
 namespace {
 
 using Word = BitGraph::Word;
+
+int count_bits(const std::vector<Word>& words) {
+  int count = 0;
+  for (const Word word : words) count += static_cast<int>(hwy::PopCount(word));
+  return count;
+}
 
 int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word)); }
 
@@ -23,11 +30,13 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph) : graph_(0) {
   std::reverse(names_.begin(), names_.end());
   for (const int name : names_) cores_.push_back(cores.numbers[static_cast<std::size_t>(name)]);
   graph_ = InducedSubgraphs(graph)(names_);
+  all_.resize(names_.size());
+  std::iota(all_.begin(), all_.end(), 0);
 }
 
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
-  return 440.0 * nodes + InducedSubgraphs::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+  return 444.0 * nodes + InducedSubgraphs::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
 }
 
 std::optional<Indices> MaxCliqueSearch::find_one(std::int64_t max_steps) {
@@ -87,14 +96,25 @@ bool MaxCliqueSearch::search(std::int64_t max_steps) {
       found_();
       continue;
     }
-    const BitGraph subgraph = induced(candidates_);
     if (levels_.size() < candidates_.size() + 1) levels_.resize(candidates_.size() + 1);
-    const std::size_t words = static_cast<std::size_t>(subgraph.words());
-    levels_[0].candidates.assign(words, ~Word{0});
+    if (2 * static_cast<int>(candidates_.size()) > graph_.size()) {  // a graph of the candidates would be no smaller
+      set_candidates(graph_);
+      candidates_ = all_;
+      if (!expand(graph_, 0)) return false;
+      continue;
+    }
+    const BitGraph subgraph = induced(candidates_);
+    levels_[0].candidates.assign(static_cast<std::size_t>(subgraph.words()), ~Word{0});
     if (subgraph.size() % 64 != 0) levels_[0].candidates.back() = (Word{1} << subgraph.size() % 64) - 1;
     if (!expand(subgraph, 0)) return false;
   }
   return true;
+}
+
+void MaxCliqueSearch::set_candidates(const BitGraph& graph) {
+  std::vector<Word>& words = levels_[0].candidates;
+  words.assign(static_cast<std::size_t>(graph.words()), 0);
+  for (const int node : candidates_) words[static_cast<std::size_t>(node >> 6)] |= Word{1} << (node & 63);
 }
 
 /// The neighbours removed later that have enough neighbours in common with the node.
@@ -114,7 +134,8 @@ Indices MaxCliqueSearch::candidates_of(int node) const {
 bool MaxCliqueSearch::expand(const BitGraph& graph, std::size_t depth) {
   Level& level = levels_[depth];
   const int size = static_cast<int>(clique_.size()) + 1;  // with the node itself
-  color(graph, level, needed_ - size);
+  const int colors = color(graph, level, needed_ - size), count = count_bits(level.candidates);
+  if (colors == count && size + count >= needed_) return take_all(level.candidates);
   for (std::size_t k = level.order.size(); k-- > 0;) {
     if (size + level.colors[k] < needed_) break;
     if (++steps_ > max_steps_) return clique_.clear(), false;
@@ -136,15 +157,28 @@ bool MaxCliqueSearch::expand(const BitGraph& graph, std::size_t depth) {
   return true;
 }
 
-/// Gives each candidate the first colour that none of its neighbours has; keeps those of colour `least` or above, ascending.
-void MaxCliqueSearch::color(const BitGraph& graph, Level& level, int least) const {
+/// Every candidate has a colour of its own: it is a neighbour of all before it. The steps are those of one after the other.
+bool MaxCliqueSearch::take_all(const std::vector<Word>& candidates) {
+  const std::size_t before = clique_.size();
+  BitGraph::for_bits(candidates.data(), static_cast<int>(candidates.size()),
+                     [&](int node) { clique_.push_back(node); });
+  steps_ += static_cast<std::int64_t>(clique_.size() - before);
+  if (steps_ > max_steps_) return clique_.clear(), false;
+  found_();
+  clique_.resize(before);
+  return true;
+}
+
+/// Gives each candidate the first colour that none of its neighbours has; keeps those of colour `least` or above, ascending. Returns the
+/// number of colours.
+int MaxCliqueSearch::color(const BitGraph& graph, Level& level, int least) const {
   level.order.clear(), level.colors.clear();
   level.uncolored = level.candidates;
   const std::size_t words = level.uncolored.size();
   std::size_t first = 0;
   for (int color = 1;; ++color) {
     while (first < words && level.uncolored[first] == 0) ++first;
-    if (first == words) return;
+    if (first == words) return color - 1;
     level.one_color = level.uncolored;
     for (std::size_t word = first; word < words; ++word) {
       while (level.one_color[word] != 0) {

@@ -42,12 +42,14 @@ class MaxCliqueSearch {
   Indices grow_from(int node) const;
   bool search(std::int64_t max_steps);
   Indices candidates_of(int node) const;
+  void set_candidates(const BitGraph& graph);
+  bool take_all(const std::vector<BitGraph::Word>& candidates);
   bool expand(const BitGraph& graph, std::size_t depth);
-  void color(const BitGraph& graph, Level& level, int least) const;
+  int color(const BitGraph& graph, Level& level, int least) const;
   Indices names_of(const Indices& nodes) const;
 
-  Indices names_;  ///< nodes of the caller, the last removed first; here they are 0, 1, ...
-  Indices cores_;
+  Indices names_;        ///< nodes of the caller, the last removed first; here they are 0, 1, ...
+  Indices cores_, all_;  ///< all nodes
   BitGraph graph_;
   std::vector<Level> levels_;
   Indices clique_, candidates_;  ///< those of the present node; the clique holds places among them

@@ -4,6 +4,7 @@
 #include <hwy/base.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "grouping/graph/core_numbers.h"
 #include "grouping/graph/induced_subgraph.h"
@@ -31,9 +32,17 @@ class Enumeration {
       graph_.for_neighbors(node, [&](int other) { neighbors.push_back(other); });
       const auto later = std::upper_bound(neighbors.begin(), neighbors.end(), node);
       if (static_cast<std::size_t>(neighbors.end() - later) + 1 < smallest_) continue;
-      const BitGraph subgraph = induced(neighbors);
       clique_ = {names_[static_cast<std::size_t>(node)]};
-      start(subgraph, static_cast<int>(later - neighbors.begin()));
+      if (2 * static_cast<int>(neighbors.size()) > graph_.size()) {  // a graph of the neighbours would be no smaller
+        start(graph_, neighbors, node);
+        if (!extend(graph_, names_, 0)) return std::nullopt;
+        continue;
+      }
+      const BitGraph subgraph = induced(neighbors);
+      const int first_later = static_cast<int>(later - neighbors.begin());
+      Indices places(neighbors.size());
+      std::iota(places.begin(), places.end(), 0);
+      start(subgraph, places, first_later);
       for (int& neighbor : neighbors) neighbor = names_[static_cast<std::size_t>(neighbor)];
       if (!extend(subgraph, neighbors, 0)) return std::nullopt;
     }
@@ -45,13 +54,13 @@ class Enumeration {
     Bits candidates, excluded, branches;  ///< P, X, and P without the neighbours of the pivot
   };
 
-  /// Neighbours from `first_later` on may join, those before are excluded.
-  void start(const BitGraph& subgraph, int first_later) {
-    const std::size_t words = static_cast<std::size_t>(subgraph.words());
+  /// Neighbours of the first node, by their places in a graph: from `first_later` on they may join, those before are excluded.
+  void start(const BitGraph& graph, const Indices& neighbors, int first_later) {
+    const std::size_t words = static_cast<std::size_t>(graph.words());
     if (levels_.empty()) levels_.resize(1);
     levels_[0].candidates.assign(words, 0);
     levels_[0].excluded.assign(words, 0);
-    for (int place = 0; place < subgraph.size(); ++place)
+    for (const int place : neighbors)
       (place < first_later ? levels_[0].excluded : levels_[0].candidates)[static_cast<std::size_t>(place >> 6)] |=
           Word{1} << (place & 63);
   }
