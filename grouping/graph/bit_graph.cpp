@@ -17,15 +17,26 @@ HWY_BEFORE_NAMESPACE();
 namespace corral::HWY_NAMESPACE {
 namespace {
 
-/// The bits that two nodes have in common.
+/// The bits that two nodes have in common, counted by bytes for as long as these hold the sum.
 HWY_INLINE std::uint64_t count_shared(const std::uint64_t* a, const std::uint64_t* b, std::size_t words) {
+  std::uint64_t count = 0;
+  std::size_t word = 0;
+#if HWY_TARGET != HWY_SCALAR
+  constexpr std::size_t kMost = 31;  // vectors whose bits a byte can count
   const hn::ScalableTag<std::uint64_t> tag;
+  const hn::Repartition<std::uint8_t, decltype(tag)> bytes;
   const std::size_t lanes = hn::Lanes(tag);
   auto sums = hn::Zero(tag);
-  std::size_t word = 0;
-  for (; word + lanes <= words; word += lanes)
-    sums = hn::Add(sums, hn::PopulationCount(hn::And(hn::LoadU(tag, a + word), hn::LoadU(tag, b + word))));
-  std::uint64_t count = hn::GetLane(hn::SumOfLanes(tag, sums));
+  while (word + lanes <= words) {
+    auto few = hn::Zero(bytes);
+    for (std::size_t k = 0; k < kMost && word + lanes <= words; ++k, word += lanes) {
+      const auto shared = hn::And(hn::LoadU(tag, a + word), hn::LoadU(tag, b + word));
+      few = hn::Add(few, hn::PopulationCount(hn::BitCast(bytes, shared)));
+    }
+    sums = hn::Add(sums, hn::SumsOf8(few));
+  }
+  count = hn::GetLane(hn::SumOfLanes(tag, sums));
+#endif
   for (; word < words; ++word) count += hwy::PopCount(a[word] & b[word]);
   return count;
 }
