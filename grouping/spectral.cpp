@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "grouping/columns/compatibility.h"
-#include "grouping/graph/compatibility_graph.h"
 #include "grouping/columns/filter.h"
+#include "grouping/graph/compatibility_graph.h"
 #include "grouping/graph/leading_entry.h"
 
 namespace corral {
@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kTie = 1e-9;
 constexpr int kNobody = -1;
+constexpr std::size_t kMany = 16;  // nodes whose columns are subtracted together
 
 /// r(i,j) where it reaches `similarity`, else 0; 1 on the diagonal.
 Eigen::MatrixXd weighted_matrix(const CorrespondenceSet& matches, double similarity) {
@@ -80,7 +81,10 @@ class Alive {
     Indices leaving;
     for (int node = 0; node < takes_part_.size(); ++node)
       if (takes_part_(node) > 0 && (node == chosen || !(column_(node) > 0))) leaving.push_back(node);
-    for (const int node : leaving) remove(node);
+    if (is_binary_ && leaving.size() > kMany)
+      remove_together(leaving);
+    else
+      for (const int node : leaving) remove(node);
     if (4 * count_ < 3 * graph_->size()) renumber();
     return row;
   }
@@ -93,16 +97,13 @@ class Alive {
   /// x_f >= count^(-1/2) and l between the mean degree and count, the entry of f exceeds all others by at least count^(-5/2),
   /// or (mean degree - count + least degree) times that.
   int compatible_with_all() const {
-    if (!is_binary_) return kNobody;
-    double least = count_;
-    int first = kNobody;
-    for (int node = 0; node < takes_part_.size(); ++node) {
-      if (!(takes_part_(node) > 0)) continue;
-      least = std::min(least, degrees_(node));
-      if (first == kNobody && degrees_(node) == count_) first = node;
-    }
+    if (!is_binary_ || count_ == 0) return kNobody;
+    const double least = (takes_part_.array() > 0).select(degrees_.array(), count_).minCoeff();
     const double factor = std::max(1.0, sum_of_squares_ / count_ - count_ + least);
-    return factor * std::pow(count_, -2.5) > 2 * kTie ? first : kNobody;
+    if (!(factor * std::pow(count_, -2.5) > 2 * kTie)) return kNobody;
+    int node = 0;
+    while (node < takes_part_.size() && !(takes_part_(node) > 0 && degrees_(node) == count_)) ++node;
+    return node < takes_part_.size() ? node : kNobody;
   }
 
   void remove(int node) {
@@ -119,11 +120,24 @@ class Alive {
     --count_;
   }
 
+  /// The same for many nodes of a graph of bits, whose sums are whole numbers.
+  void remove_together(const Indices& nodes) {
+    Eigen::VectorXd ones = Eigen::VectorXd::Zero(takes_part_.size());
+    ones(nodes).setOnes();
+    graph_->round_and_multiply(ones, column_);
+    degrees_ -= column_;
+    leading_.remove(nodes, *graph_);
+    takes_part_(nodes).setZero();
+    if (entries_.size() > 0) entries_(nodes).setZero();
+    count_ -= static_cast<int>(nodes.size());
+    sum_of_squares_ = degrees_.dot(takes_part_);
+  }
+
   void renumber() {
     Indices nodes;
     for (int node = 0; node < takes_part_.size(); ++node)
       if (takes_part_(node) > 0) nodes.push_back(node);
-    graph_ = graph_->restricted(nodes);
+    graph_->keep(nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i) rows_[i] = rows_[static_cast<std::size_t>(nodes[i])];
     rows_.resize(nodes.size());
     leading_.renumber(nodes);
@@ -166,7 +180,7 @@ GroupingResult group_by_spectral(const CorrespondenceSet& matches, const Spectra
 }
 
 double working_memory(int matches, const SpectralOptions& options) {
-  // The graph, and a copy while it is renumbered or a part of it is solved; then columns of doubles, most of them the
+  // The graph, and a copy while a part of it is solved; then columns of doubles, most of them the
   // basis of the eigenvector.
   const double n = matches, graph = options.weighted ? 8 * n * n : CompatibilityGraph::memory(matches);
   return 2 * graph + 600 * n + 65536;

@@ -34,9 +34,9 @@ struct SpectralOptions {
 /// Reads     source_points, target_points.
 /// Returns   selected only.
 /// Cost      O(M^2) time for the graph, for all matches that leave, and for each matrix product, of which there are far fewer
-///           than accepted matches (see leading_entry.h). M^2 / 8 bytes for the graph, 2^30 at most: what is not stored is
-///           computed again (compatibility_graph.h); twice that while it is renumbered. weighted: 8 M^2, twice.
-///           Deterministic.
+///           than accepted matches (see leading_entry.h). M^2 / 8 bytes for the graph, 1.5 * 2^30 at most: what is not stored
+///           is computed again (compatibility_graph.h); twice that where a part of it is solved on its own. weighted: 8 M^2,
+///           twice. Deterministic.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
 /// Departs   The eigenvector is the converged one (see principal_eigenvector.h), not that of a fixed number of rounds; it is
 ///           computed until it is certain which entry is the largest. Entries within 1e-9 of the maximum are ties: the lowest

@@ -11,9 +11,10 @@ namespace {
 
 constexpr int kProducts = 8;           // most before the answer is uncertain
 constexpr double kWorthAsking = 3e-2;  // the sine below which a proof is tried
-constexpr double kMargin = 1e-3;       // for the cosine and for rounding
+constexpr double kMargin = 1e-9;       // for rounding of what is computed from the image
 constexpr int kCompared = 4096;        // most comparisons of rows in one proof
 constexpr double kRounding = 0x1p-52;  // of a difference or a quotient and what it came from
+constexpr double kRoundings = 32;  // of an entry of an image made of products, and of the same entries of the products
 
 /// A bound of the sine of the angle between a vector and the principal eigenvector, from its Rayleigh quotient and the
 /// length of its residual; infinite if nothing is known.
@@ -40,7 +41,8 @@ class Proof {
     value_ = value + residual;
     rounding_ = rounding;
     no_tie_ = tie * (1 + kMargin) * value_ + 2 * rounding;
-    surely_tie_ = tie * (1 - kMargin) * value - 2 * rounding;
+    surely_tie_ = tie * (1 - kMargin - sine_ * sine_) * value - 2 * rounding;  // cos >= 1 - sine^2
+    least_value_ = value;
     most_columns_ = differences_.columns_read() + 8 + graph_.count / 128;
     int first = 0, larger = 0;
     image_.maxCoeff(&larger);
@@ -86,7 +88,9 @@ class Proof {
     if (lead > sine_ * std::sqrt(squares) + no_tie_) return Order::Smaller;
     if (others == 0 && sum == 0) return Order::Tied;  // they can change places
     if (graph_.is_binary) product_error += std::abs(sum) * std::sqrt(graph_.count);
-    product_error = sine_ * product_error + no_tie_ * value_ + size * rounding_;
+    product_error = sine_ * product_error + size * rounding_;
+    if (std::abs(product) + product_error <= surely_tie_ * least_value_) return Order::Tied;
+    product_error += no_tie_ * value_;
     if (product > product_error) return Order::Smaller;
     return -product > product_error ? Order::Larger : Order::Unknown;
   }
@@ -105,7 +109,7 @@ class Proof {
   const Subgraph& graph_;
   const Eigen::VectorXd& image_;
   RowDifferences& differences_;
-  double sine_ = 0, value_ = 0, rounding_ = 0, no_tie_ = 0, surely_tie_ = 0;
+  double sine_ = 0, value_ = 0, least_value_ = 0, rounding_ = 0, no_tie_ = 0, surely_tie_ = 0;
   int compared_ = 0, most_columns_ = 0, leader_ = LeadingEntry::kUncertain;
 };
 
@@ -200,6 +204,18 @@ void LeadingEntry::remove(int node, const Eigen::VectorXd& column) {
   vector_(node) = image_(node) = 0;
 }
 
+void LeadingEntry::remove(const Indices& nodes, const GraphMatrix& matrix) {
+  Eigen::VectorXd leaving = Eigen::VectorXd::Zero(vector_.size()), product;
+  leaving(nodes) = vector_(nodes);
+  if (!leaving.isZero(0)) {
+    matrix.multiply(leaving, product);
+    image_ -= product;
+    rounding_ += kRoundings * kRounding * image_norm_;
+  }
+  vector_(nodes).setZero();
+  image_(nodes).setZero();
+}
+
 void LeadingEntry::renumber(const Indices& nodes) {
   vector_ = Eigen::VectorXd(vector_(nodes));
   image_ = Eigen::VectorXd(image_(nodes));
@@ -252,8 +268,9 @@ int LeadingEntry::improve(const Subgraph& graph, double tie) {
     vector_ = basis.leftCols(used) * pair.vector / length;
     image_ = products.leftCols(used) * pair.vector / length;
     image_norm_ = image_.norm();
-    rounding_ = 0;  // that of the sums is within kMargin
-    const int leader = Proof(graph, image_, differences_).leader(vector_, 0, tie);
+    rounding_ =
+        kRoundings * kRounding * (products.leftCols(used).cwiseAbs() * pair.vector.cwiseAbs()).maxCoeff() / length;
+    const int leader = Proof(graph, image_, differences_).leader(vector_, rounding_, tie);
     if (ends || leader != kUncertain) return leader;
   }
 }

@@ -64,6 +64,8 @@ class LeadingEntry {
 
   /// A node leaves, of this column.
   void remove(int node, const Eigen::VectorXd& column);
+  /// Nodes of this matrix leave.
+  void remove(const Indices& nodes, const GraphMatrix& matrix);
   /// The nodes are numbered anew.
   void renumber(const Indices& nodes);
 

@@ -23,8 +23,10 @@ class GraphMatrix {
   virtual double sum_of_squares() const = 0;
   /// column = M e_node.
   virtual void get_column(int node, Eigen::VectorXd& column) const = 0;
-  /// The rows and columns of these nodes, in this order.
+  /// The rows and columns of these nodes, which ascend.
   virtual std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const = 0;
+  /// Becomes that.
+  virtual void keep(const Indices& nodes) = 0;
 };
 
 /// A matrix of doubles.
@@ -42,6 +44,7 @@ class DenseGraph : public GraphMatrix {
   std::unique_ptr<GraphMatrix> restricted(const Indices& nodes) const override {
     return std::make_unique<DenseGraph>(matrix_(nodes, nodes));
   }
+  void keep(const Indices& nodes) override { matrix_ = Eigen::MatrixXd(matrix_(nodes, nodes)); }
 
  private:
   Eigen::MatrixXd matrix_;

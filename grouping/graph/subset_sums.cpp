@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/graph/subset_sums.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "grouping/graph/subset_sums.cpp"
 #include <hwy/foreach_target.h>
@@ -67,15 +69,23 @@ HWY_INLINE void look_up(const Tables& tables, const std::uint8_t* const (&bytes)
 #endif
 
 HWY_FLATTEN void add_named(const BitBlocks& matrix, const Number* numbers, Number* sums) {
-  for (int block = 0; block < matrix.blocks; block += kBlocksTogether) {
-    Tables tables;
-    const std::uint8_t* columns[kBlocksTogether];
-    for (int k = 0; k < kBlocksTogether; ++k) {
-      columns[k] = matrix.bytes + (block + k) * matrix.stride;
-      for (int half = 0; half < 2; ++half) tables[k][half] = add_up(numbers + kBlockColumns * (block + k) + 4 * half);
-    }
+  Tables tables;
+  const std::uint8_t* columns[kBlocksTogether];
+  int waiting = 0;
+  const auto add = [&](const std::uint8_t* bytes, const Number* of_block) HWY_ATTR {
+    columns[waiting] = bytes;
+    for (int half = 0; half < 2; ++half) tables[waiting][half] = add_up(of_block + 4 * half);
+    if (++waiting < kBlocksTogether) return;
     look_up(tables, columns, matrix.rows, sums);
+    waiting = 0;
+  };
+  for (int block = 0; block < matrix.blocks; ++block) {
+    const Number* const of_block = numbers + kBlockColumns * block;
+    if (std::any_of(of_block, of_block + kBlockColumns, [](Number each) { return each != 0; }))
+      add(matrix.bytes + block * matrix.stride, of_block);
   }
+  constexpr Number kNothing[kBlockColumns] = {};
+  while (waiting > 0) add(matrix.bytes, kNothing);
 }
 
 }  // namespace

@@ -17,11 +17,11 @@ struct BitBlocks {
   const std::uint8_t* bytes;
   int rows;
   std::ptrdiff_t stride;  ///< of a block, a multiple of kFloatLanes; bytes behind the last row count nowhere
-  int blocks;             ///< there is memory for a multiple of kBlocksTogether
+  int blocks;
 };
 
 /// sums[row] += the sum of the numbers of the columns whose bits are set in the row. Modulo 2^32; `numbers` are as many as
-/// columns, `sums` as many as a stride.
+/// columns, `sums` as many as a stride. A block whose numbers are all 0 is not read.
 void add_named(const BitBlocks& matrix, const std::int32_t* numbers, std::int32_t* sums);
 
 }  // namespace corral

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -86,7 +87,9 @@ TEST(CompatibilityGraph, WhatIsStoredDoesNotMatter) {
         EXPECT_EQ(computed.degrees(), stored.degrees());
         const std::pair<const GraphMatrix*, const GraphMatrix*> whole{&computed, &stored};
         const auto some = computed.restricted(nodes), expected_some = stored.restricted(nodes);
-        for (const auto& [graph, expected] : {whole, {some.get(), expected_some.get()}}) {
+        CompatibilityGraph kept(matches, kSimilarity, most_stored);
+        kept.keep(nodes);
+        for (const auto& [graph, expected] : {whole, {some.get(), expected_some.get()}, {&kept, expected_some.get()}}) {
           const Eigen::VectorXd numbers = random_numbers(graph->size(), 1);
           Eigen::VectorXd product, expected_product, rounded = numbers, expected_rounded = numbers;
           graph->multiply(numbers, product);
@@ -104,6 +107,42 @@ TEST(CompatibilityGraph, WhatIsStoredDoesNotMatter) {
         }
       }
     }
+}
+
+// In place, again and again, as ST does: the front, the end, all, every other one.
+TEST(CompatibilityGraph, KeepsSomeNodesAgainAndAgain) {
+  const CorrespondenceSet matches = testing::harsh_table(333, 0.3, 2);
+  for (const double most_stored : {0.0, 333 * 20.0, CompatibilityGraph::kMostStored}) {
+    CompatibilityGraph graph(matches, kSimilarity, most_stored);
+    Eigen::MatrixXd expected = dense(matches);
+    for (const auto& [first, last, step] :
+         {std::array{0, 333, 1}, {5, 333, 1}, {0, 320, 1}, {0, 320, 3}, {1, 100, 2}, {0, 1, 1}, {0, 0, 1}}) {
+      Indices nodes;
+      for (int node = first; node < last; node += step) nodes.push_back(node);
+      graph.keep(nodes);
+      expected = Eigen::MatrixXd(expected(nodes, nodes));
+      ASSERT_EQ(graph.size(), expected.cols());
+      Eigen::VectorXd column;
+      for (int node = 0; node < graph.size(); ++node) {
+        graph.get_column(node, column);
+        ASSERT_EQ(column, expected.col(node)) << most_stored << " " << last << " " << node;
+      }
+      EXPECT_EQ(graph.degrees(), expected.rowwise().sum());
+    }
+  }
+}
+
+TEST(CompatibilityGraph, ProductWithAFewNumbers) {
+  const CorrespondenceSet matches = testing::harsh_table(333, 0.3, 2);
+  for (const double most_stored : {0.0, 333 * 20.0, CompatibilityGraph::kMostStored}) {
+    const CompatibilityGraph graph(matches, kSimilarity, most_stored);
+    for (const Indices& nodes : {Indices{0}, {332}, {3, 4, 200}, {8, 16, 24, 32, 40, 331}}) {
+      Eigen::VectorXd few = Eigen::VectorXd::Zero(333), product;
+      for (const int node : nodes) few(node) = node + 1;
+      graph.round_and_multiply(few, product);
+      EXPECT_EQ(product, dense(matches) * few) << most_stored << " " << nodes.size();
+    }
+  }
 }
 
 TEST(CompatibilityGraph, StoresNoMoreThanItMay) {

@@ -159,6 +159,47 @@ TEST(LeadingEntry, IsKnownWhileNodesLeave) {
   EXPECT_LT(products, cases * 3 / 2);  // without the pair at least two each
 }
 
+TEST(LeadingEntry, IsKnownAfterManyNodesLeaveTogether) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    constexpr int kSize = 120;
+    const Eigen::MatrixXd matrix =
+        random_connected(kSize, 0.9, seed, true).unaryExpr([](double entry) { return entry > 0 ? 1.0 : 0.0; });
+    const CountedGraph counted(matrix);
+    Eigen::VectorXd takes_part = Eigen::VectorXd::Ones(kSize);
+    LeadingEntry leading(takes_part);
+    const auto find = [&] {
+      const Part part(matrix, takes_part);
+      const Subgraph alive = part.graph();
+      return leading.find({counted, takes_part, alive.degrees, alive.sum_of_squares, alive.count, alive.is_binary},
+                          1e-9);
+    };
+    ASSERT_EQ(find(), first_of_largest(matrix, takes_part, 1e-9)) << seed;
+    Indices leaving;
+    for (int node = static_cast<int>(seed); node < kSize; node += 7) leaving.push_back(node);
+    takes_part(leaving).setZero();
+    leading.remove(leaving, counted);
+    EXPECT_EQ(find(), first_of_largest(matrix, takes_part, 1e-9)) << seed;
+  }
+}
+
+// What decides is whether a lead exceeds the tie, however little.
+TEST(LeadingEntry, LeadsNearATieAreDecided) {
+  const Eigen::MatrixXd matrix =
+      random_connected(200, 0.9, 3, true).unaryExpr([](double entry) { return entry > 0 ? 1.0 : 0.0; });
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(200);
+  const Eigen::VectorXd x = dense_answer(matrix);
+  Eigen::Index first = 0;
+  for (Eigen::Index node = 0; node < 200; ++node)
+    if (x(node) > x(first)) first = node;
+  Eigen::Index second = first == 0;
+  for (Eigen::Index node = 0; node < 200; ++node)
+    if (node != first && x(node) > x(second)) second = node;
+  const double lead = x(first) - x(second);
+  ASSERT_GT(lead, 1e-6);
+  EXPECT_EQ(leading_entry(matrix, all, lead * (1 - 1e-4)), first);
+  EXPECT_EQ(leading_entry(matrix, all, lead * (1 + 1e-4)), std::min(first, second));
+}
+
 TEST(LeadingEntry, NodesThatCanChangePlacesAreAlike) {
   // Nodes 1 and 4 are compatible with all but each other, the others with all but two: the rows of 1 and 4 differ, and yet
   // their entries are equal.
