@@ -72,18 +72,22 @@ Descriptors describe_shot(const Points& vertices, const Points& normals, const I
   descriptors.frames.resize(keypoints.size());
   descriptors.features.resize(kShotSize, static_cast<Eigen::Index>(keypoints.size()));
   std::vector<KeypointOutcome> outcomes(keypoints.size());
-  visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
+  const auto describe = [&](std::size_t i, const Support& support, ShotBins& bins) {
     outcomes[i] = KeypointOutcome::SmallSupport;
     if (support.count < options.minimum_support) return;
     outcomes[i] = KeypointOutcome::NoFrame;
     const auto frame = shot_frame(support, radius);
     if (!frame) return;
     outcomes[i] = KeypointOutcome::NoHistogram;
-    const auto histogram = shot_histogram(support, *frame, radius, options.form);
+    const auto histogram = shot_histogram(support, *frame, radius, options.form, bins);
     if (!histogram) return;
     outcomes[i] = KeypointOutcome::Described;
     descriptors.frames[i] = *frame;
     std::copy_n(histogram->data(), kShotSize, descriptors.features.col(static_cast<Eigen::Index>(i)).data());
+  };
+  visit_supports(finder, keypoints, parallel, [&describe] {
+    return
+        [&describe, bins = ShotBins()](std::size_t i, const Support& support) mutable { describe(i, support, bins); };
   });
   keep_described(keypoints, outcomes, descriptors);
   return descriptors;
@@ -102,12 +106,13 @@ void add_shot_frames(const Points& vertices, double resolution, const ShotOption
   descriptors.vertices.clear();
   descriptors.frames.resize(keypoints.size());
   std::vector<KeypointOutcome> outcomes(keypoints.size(), KeypointOutcome::NoFrame);
-  visit_supports(finder, keypoints, parallel, [&](std::size_t i, const Support& support) {
+  const auto add_frame = [&](std::size_t i, const Support& support) {
     if (const auto frame = shot_frame(support, radius)) {
       descriptors.frames[i] = *frame;
       outcomes[i] = KeypointOutcome::Described;
     }
-  });
+  };
+  visit_supports(finder, keypoints, parallel, [&add_frame] { return add_frame; });
   keep_described(keypoints, outcomes, descriptors);
 }
 

@@ -47,6 +47,12 @@ struct ShotOptions {
 /// Plain form  tests/support/reference_shot.h
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
+/// Where the votes of a support are counted, four copies of 32 volumes with room for 16 bins: neighbouring vertices fall into the
+/// same bins, and need not wait for each other. Empty between two supports, so that it is cleared once for many of them.
+struct ShotBins {
+  alignas(64) double votes[4][512] = {};
+};
+
 /// The SHOT histogram of a support, unit length; absent if no vertex with a normal is in it.
 ///
 /// For each vertex the cosine between its normal and the frame's z axis is counted in the volume that the vertex lies in.
@@ -63,7 +69,7 @@ std::optional<LocalReferenceFrame> shot_frame(const Support& support, double rad
 /// Departs   From that library: the cosine ends with its last bin (`pcl-bug` wraps), and double decides what float does there.
 /// Plain form  tests/support/reference_shot.h
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
-                                              ShotForm form = ShotForm::Additive);
+                                              ShotForm form, ShotBins& bins);
 
 /// Frames and SHOT descriptors of chosen vertices; `normals` V x 3 (zero rows are ignored). Any number of threads, and any
 /// numbering of the vertices, gives the same bits.

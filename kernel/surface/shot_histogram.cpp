@@ -159,23 +159,20 @@ class Voter {
   bool is_product_;
 };
 
-/// Copies of the histogram: neighbouring vertices fall into the same bins, and need not wait for each other.
 constexpr std::size_t kCopies = 4;
-struct Histograms {
-  alignas(64) double bins[kCopies][kPlaces] = {};
-};
+static_assert(sizeof(ShotBins) == sizeof(double) * kCopies * kPlaces);
 
-void add_one_axis_at_a_time(const Votes& votes, std::size_t count, Histograms& histograms) {
+void add_one_axis_at_a_time(const Votes& votes, std::size_t count, ShotBins& bins) {
   for (std::size_t first = 0; first < count; first += kCopies)
     for (std::size_t copy = 0; copy < kCopies; ++copy) {
       const std::size_t i = first + copy;
-      double* const bins = histograms.bins[copy];
-      bins[votes.home(i)] += votes.rest[i];
-      for (int axis = 0; axis < Votes::kAxes; ++axis) bins[votes.beside(axis, i)] += votes.share[axis][i];
+      double* const own = bins.votes[copy];
+      own[votes.home(i)] += votes.rest[i];
+      for (int axis = 0; axis < Votes::kAxes; ++axis) own[votes.beside(axis, i)] += votes.share[axis][i];
     }
 }
 
-void add_products(const Votes& votes, std::size_t count, Histograms& histograms) {
+void add_products(const Votes& votes, std::size_t count, ShotBins& bins) {
   for (std::size_t i = 0; i < count; ++i)
     for (int corner = 0; corner < 1 << Votes::kAxes; ++corner) {
       double weight = 1;
@@ -185,17 +182,18 @@ void add_products(const Votes& votes, std::size_t count, Histograms& histograms)
         weight *= aside ? votes.share[axis][i] : votes.kept[axis][i];
         if (aside) bin += votes.beside(axis, i) - votes.home(i);
       }
-      histograms.bins[i % kCopies][bin] += weight;
+      bins.votes[i % kCopies][bin] += weight;
     }
 }
 
-/// The copies added, each volume at its place, at length one; nothing if that is impossible.
-HWY_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histograms) {
+/// The copies added, each volume at its place, at length one; nothing if that is impossible. Empties them.
+HWY_INLINE std::optional<Eigen::VectorXd> normalized(ShotBins& bins) {
   double values[kShotSize + kVolume];
   for (int volume = 0; volume < kPlaces / kVolume; ++volume)
     for (int i = 0; i < kVolume; i += kLanes) {  // the excess of a volume is overwritten by the next one
-      const auto load = [&](int copy) HWY_ATTR { return Lanes::load(&histograms.bins[copy][volume * kVolume + i]); };
+      const auto load = [&](int copy) HWY_ATTR { return Lanes::load(&bins.votes[copy][volume * kVolume + i]); };
       ((load(0) + load(1)) + (load(2) + load(3))).store(&values[volume * kCosines + i]);
+      for (auto& copy : bins.votes) Lanes::fill(0).store(&copy[volume * kVolume + i]);
     }
   Lanes squares = Lanes::fill(0);
   for (int i = 0; i < kShotSize; i += kLanes) {
@@ -210,8 +208,7 @@ HWY_INLINE std::optional<Eigen::VectorXd> normalized(const Histograms& histogram
 }
 
 HWY_FLATTEN std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame,
-                                                          double radius, ShotForm form) {
-  Histograms histograms;
+                                                          double radius, ShotForm form, ShotBins& bins) {
   const auto add = form == ShotForm::Product ? add_products : add_one_axis_at_a_time;
   Votes votes;
   const Voter voter(support, frame, radius, form);
@@ -219,9 +216,9 @@ HWY_FLATTEN std::optional<Eigen::VectorXd> shot_histogram(const Support& support
   for (std::size_t first = 0; first < end; first += Votes::kMost) {
     const std::size_t count = std::min<std::size_t>(Votes::kMost, end - first);
     for (std::size_t i = 0; i < count; i += kLanes) voter.vote(first + i, i, votes);
-    add(votes, count, histograms);
+    add(votes, count, bins);
   }
-  return normalized(histograms);
+  return normalized(bins);
 }
 
 }  // namespace
@@ -234,8 +231,8 @@ namespace corral {
 HWY_EXPORT(shot_histogram);
 
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
-                                              ShotForm form) {
-  return HWY_DYNAMIC_DISPATCH(shot_histogram)(support, frame, radius, form);
+                                              ShotForm form, ShotBins& bins) {
+  return HWY_DYNAMIC_DISPATCH(shot_histogram)(support, frame, radius, form, bins);
 }
 
 }  // namespace corral

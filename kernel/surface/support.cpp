@@ -87,12 +87,13 @@ void SupportFinder::collect(std::size_t slot, const std::vector<SlotRange>& rang
 }
 
 void visit_supports(const SupportFinder& finder, const Indices& keypoints, const ParallelFor& parallel,
-                    const std::function<void(std::size_t i, const Support& support)>& visit) {
+                    const std::function<SupportVisit()>& visitor) {
   constexpr std::size_t kBlock = 64;
   const auto order = finder.walk(keypoints);
   parallel(static_cast<int>((order.size() + kBlock - 1) / kBlock), [&](int block) {
     auto place = finder.start();
     Support support;
+    const SupportVisit visit = visitor();
     const std::size_t first = static_cast<std::size_t>(block) * kBlock;
     for (std::size_t at = first; at < std::min(order.size(), first + kBlock); ++at) {
       finder.find(keypoints[order[at]], place, support);

@@ -60,8 +60,10 @@ class SupportFinder {
   std::vector<int> slots_;  // by vertex
 };
 
-/// Calls visit(i, support) once for every keypoint i, in an order that the finder likes, on any thread.
+/// Calls visit(i, support) once for every keypoint i, in an order that the finder likes, on any thread. `visitor` makes the
+/// visit of each chunk of keypoints: it may own memory that one keypoint after the other uses.
+using SupportVisit = std::function<void(std::size_t i, const Support& support)>;
 void visit_supports(const SupportFinder& finder, const Indices& keypoints, const ParallelFor& parallel,
-                    const std::function<void(std::size_t i, const Support& support)>& visit);
+                    const std::function<SupportVisit()>& visitor);
 
 }  // namespace corral

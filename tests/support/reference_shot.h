@@ -20,6 +20,13 @@ Support support_of(const Points& vertices, const Points& normals, const Eigen::V
 std::optional<LocalReferenceFrame> reference_shot_frame(const Points& vertices, const Eigen::Vector3d& point,
                                                         double radius);
 
+/// That of the fast code, in bins of its own.
+inline std::optional<Eigen::VectorXd> fresh_histogram(const Support& support, const LocalReferenceFrame& frame,
+                                                      double radius, ShotForm form = ShotForm::Additive) {
+  ShotBins bins;
+  return shot_histogram(support, frame, radius, form, bins);
+}
+
 /// The histogram before its length is made one: what the vertices within the radius, normals not zero, add up to.
 Eigen::VectorXd reference_shot_votes(const Points& vertices, const Points& normals, const Eigen::Vector3d& point,
                                      const LocalReferenceFrame& frame, double radius,

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <iterator>
 
 #include "kernel/random.h"
 #include "kernel/surface/normals.h"
@@ -15,6 +17,7 @@
 namespace corral {
 namespace {
 
+using testing::fresh_histogram;
 using testing::points_of;
 using testing::shot_bin;
 using testing::support_of;
@@ -24,7 +27,7 @@ Eigen::VectorXd single(const Eigen::Vector3d& place, double cosine, double radiu
                        ShotForm form = ShotForm::Additive) {
   Support support;
   support.add(place, {std::sqrt(1 - cosine * cosine), 0, cosine});
-  const auto histogram = shot_histogram(support, LocalReferenceFrame::Identity(), radius, form);
+  const auto histogram = fresh_histogram(support, LocalReferenceFrame::Identity(), radius, form);
   return histogram.value_or(Eigen::VectorXd::Zero(kShotSize));
 }
 
@@ -45,7 +48,7 @@ TEST(ShotHistogram, AgreesWithTheReference) {
         const auto frame = testing::reference_shot_frame(mesh.vertices, point, radius);
         const Support support = support_of(mesh.vertices, normals, point, radius);
         for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
-          const auto found = shot_histogram(support, *frame, radius, form);
+          const auto found = fresh_histogram(support, *frame, radius, form);
           const auto expected = testing::reference_shot_histogram(mesh.vertices, normals, point, *frame, radius, form);
           ASSERT_TRUE(found.has_value());
           ASSERT_EQ(found->size(), kShotSize);
@@ -102,7 +105,7 @@ TEST(ShotHistogram, CosineOutsideItsRangeIsClamped) {
   for (const double sign : {1.0, -1.0}) {
     Support support;
     support.add(polar(1, 45, 22.5), {0, 0, sign * (1 + 1e-9)});
-    const auto histogram = shot_histogram(support, LocalReferenceFrame::Identity(), 4);
+    const auto histogram = fresh_histogram(support, LocalReferenceFrame::Identity(), 4);
     ASSERT_TRUE(histogram.has_value());
     EXPECT_NEAR((*histogram)(shot_bin(4, 0, 1, sign > 0 ? 10 : 0)), 1, 1e-8);
   }
@@ -126,9 +129,25 @@ TEST(ShotHistogram, IsAbsentWithoutANormal) {
   const Support support = support_of(vertices, Points::Zero(vertices.rows(), 3), {0, 0, 1}, 0.9);
   EXPECT_GT(support.count, 10);
   for (const ShotForm form : {ShotForm::Additive, ShotForm::PclBug, ShotForm::Product}) {
-    EXPECT_FALSE(shot_histogram(support, LocalReferenceFrame::Identity(), 0.9, form).has_value());
-    EXPECT_FALSE(shot_histogram(Support(), LocalReferenceFrame::Identity(), 0.9, form).has_value());
+    EXPECT_FALSE(fresh_histogram(support, LocalReferenceFrame::Identity(), 0.9, form).has_value());
+    EXPECT_FALSE(fresh_histogram(Support(), LocalReferenceFrame::Identity(), 0.9, form).has_value());
   }
+}
+
+TEST(ShotHistogram, LeavesItsBinsAsItFoundThem) {
+  const Mesh mesh = testing::bumpy_sphere(3, 1);
+  const Points normals = estimate_normals(mesh);
+  const double radius = 12 * point_resolution(mesh.vertices);
+  ShotBins bins;
+  for (const ShotForm form : {ShotForm::Additive, ShotForm::Product, ShotForm::PclBug})
+    for (int row = 0; row < mesh.vertices.rows(); row += 11) {
+      const Support support = support_of(mesh.vertices, normals, mesh.vertices.row(row).transpose(), radius);
+      const auto frame = shot_frame(support, radius).value();
+      EXPECT_EQ(shot_histogram(support, frame, radius, form, bins), fresh_histogram(support, frame, radius, form))
+          << row;
+      for (const auto& copy : bins.votes)
+        EXPECT_TRUE(std::all_of(std::begin(copy), std::end(copy), [](double votes) { return votes == 0; })) << row;
+    }
 }
 
 // Beyond the last centre of an axis that ends there is nobody to share with: half of that vote is lost.
@@ -183,7 +202,7 @@ TEST(ShotHistogram, ProductVotesAddUpToTheirNumber) {
     normals.row(row) = random.direction().transpose();
   }
   const auto frame = LocalReferenceFrame::Identity();
-  const auto found = shot_histogram(support_of(vertices, normals, {0, 0, 0}, 4), frame, 4, ShotForm::Product);
+  const auto found = fresh_histogram(support_of(vertices, normals, {0, 0, 0}, 4), frame, 4, ShotForm::Product);
   const Eigen::VectorXd votes =
       testing::reference_shot_votes(vertices, normals, {0, 0, 0}, frame, 4, ShotForm::Product);
   EXPECT_NEAR(votes.sum(), 500, 1e-9);

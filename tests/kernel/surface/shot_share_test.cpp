@@ -22,7 +22,7 @@ Eigen::VectorXd votes_of(const Eigen::Vector3d& place) {
   support.add(place, {0, 0, 1});
   const double flat = std::sqrt(0.5), turn = std::acos(-1.0) / 8;
   support.add({flat * std::cos(turn), flat * std::sin(turn), flat}, {0, 0, -1});
-  Eigen::VectorXd votes = shot_histogram(support, LocalReferenceFrame::Identity(), kRadius).value();
+  Eigen::VectorXd votes = testing::fresh_histogram(support, LocalReferenceFrame::Identity(), kRadius).value();
   votes *= 4 / votes(shot_bin(4, 0, 1, 0));
   for (int bin = 0; bin < kShotSize; bin += 11) votes(bin) = 0;
   return votes;
