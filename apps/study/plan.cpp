@@ -74,7 +74,7 @@ class Estimator {
 }  // namespace
 
 std::uint64_t call_nanoseconds(const std::string& method, std::uint64_t matches) {
-  const std::uint64_t tenths = method == "gtm" ? 330 : method == "st" ? 120 : method == "si" ? 13 : 1;
+  const std::uint64_t tenths = method == "gtm" ? 330 : method == "st" ? 40 : method == "si" ? 13 : 1;
   return 1'100 * matches + tenths * matches * matches / 10;
 }
 

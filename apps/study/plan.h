@@ -24,8 +24,8 @@ struct UnitEstimate {
   double seconds() const { return static_cast<double>(microseconds) / 1e6; }
 };
 /// What a call of a grouper is expected to take on a table of M matches, with the refinement and the scores behind it: d M + e M^2
-/// with an e for each grouper: of ST that on real tables of 100,000 matches (grouping/README.md), which differ by three times, of
-/// SI there, of GTM on 1,500 matches; of all others next to nothing.
+/// with an e for each grouper: of ST that on real tables of 100,000 matches (grouping/README.md), of SI
+/// there, of GTM on 1,500 matches; of all others next to nothing.
 std::uint64_t call_nanoseconds(const std::string& method, std::uint64_t matches);
 
 /// The estimates of all units. A file that is not there has the size 0; its pair fails soon.

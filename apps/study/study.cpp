@@ -61,6 +61,8 @@ class Runner {
         note(unit);
       else
         left.push_back(unit);
+    const std::vector<UnitEstimate> estimates = estimate_units(list_);
+    for (const std::size_t unit : left) progress_.expected_s += estimates[unit].seconds();
     observer.progress(progress_);
     workers(jobs)(static_cast<int>(left.size()), [&](int i) {
       const std::size_t unit = left[static_cast<std::size_t>(i)];

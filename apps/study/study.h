@@ -24,6 +24,7 @@ struct StudySettings {
 
 struct StudyProgress {
   std::size_t done = 0, failed = 0, total = 0;  ///< units of work, of the shard
+  double expected_s = 0;  ///< that those left when the call began take together on one processor, by the plan
 };
 
 /// How run_study tells of its work. Both are called by one thread at a time.

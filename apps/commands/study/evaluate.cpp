@@ -56,9 +56,9 @@ int evaluate_pairs(const Settings& settings, const StudyCall& call, const WorkLi
   std::optional<Progress> progress;
   StudyObserver observer;
   observer.progress = [&](const StudyProgress& now) {
-    if (!progress) progress.emplace(static_cast<double>(now.total - now.done));
-    progress->begin(std::to_string(now.done) + " of " + std::to_string(now.total) + " pairs done, " +
-                    std::to_string(now.failed) + " failed");
+    const bool is_first = !progress;
+    if (is_first) progress.emplace(static_cast<double>(now.total - now.done));
+    progress->begin(progress_text(now, is_first));
   };
   observer.stopped = [&](const StudyProgress& now) {
     progress.reset();

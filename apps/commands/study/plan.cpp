@@ -5,6 +5,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/commands/study/study_options.h"
+#include "apps/commands/study/study_text.h"
 #include "apps/report/figure/folders.h"
 #include "apps/report/figure/gnuplot.h"
 #include "apps/report/figure/panel_figure.h"
@@ -24,11 +25,6 @@ struct Settings {
   std::string like, scaling;
   bool json = false;
 };
-
-std::string duration(double seconds) {
-  if (seconds < 120) return fixed(seconds, 0) + " s";
-  return seconds < 7200 ? fixed(seconds / 60, 0) + " min" : fixed(seconds / 3600, 1) + " h";
-}
 
 /// Of every unit: its own time where that study recorded it, else its estimate, scaled to that study.
 std::vector<double> unit_seconds(const WorkList& list, const std::vector<UnitEstimate>& estimates,

@@ -110,6 +110,19 @@ std::string counts_text(const StudyOutcome& outcome) {
          (outcome.failed > 0 ? " (records.csv says why)" : "");
 }
 
+std::string duration(double seconds) {
+  if (seconds < 120) return fixed(seconds, 0) + " s";
+  return seconds < 7200 ? fixed(seconds / 60, 0) + " min" : fixed(seconds / 3600, 1) + " h";
+}
+
+std::string progress_text(const StudyProgress& now, bool is_first) {
+  constexpr double kLong = 10;
+  const std::string text = std::to_string(now.done) + " of " + std::to_string(now.total) + " pairs done, " +
+                           std::to_string(now.failed) + " failed";
+  if (!is_first || now.expected_s < kLong) return text;
+  return text + ", expected to take about " + duration(now.expected_s) + " on one processor";
+}
+
 void say_study(const StudyOutcome& outcome) {
   say_some("truth does not fit: ", outcome.misfits);
   say_some("", outcome.warnings);

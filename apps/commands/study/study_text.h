@@ -21,6 +21,12 @@ Json study_json(const std::string& folder, const StudyOutcome& outcome);
 /// "463 pairs, 2 failed (records.csv says why)".
 std::string counts_text(const StudyOutcome& outcome);
 
+/// "90 s", "3 min", "2.5 h".
+std::string duration(double seconds);
+
+/// "3 of 10 pairs done, 0 failed"; as the first of a call with what the others are expected to take, from 10 s on.
+std::string progress_text(const StudyProgress& now, bool is_first);
+
 /// Warns on stderr of data that make results wrong, the first few of each kind.
 void say_study(const StudyOutcome& outcome);
 
