@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <limits>
 
 #include "io/array/npy_file.h"
 #include "io/disk/file.h"
@@ -38,12 +39,12 @@ class TextTable {
   }
 
  private:
-  /// A line with a semicolon or else a comma is separated by it; one at its end separates nothing.
+  /// A line with a semicolon or else a comma is separated by it; one at its end separates nothing, unless the names say so.
   const std::vector<std::string_view>& fields() {
     for (const char separator : {';', ','}) {
       if (reader_.line().find(separator) == std::string_view::npos) continue;
       fields_ = reader_.fields(separator);
-      if (fields_.size() > 1 && fields_.back().empty()) fields_.pop_back();
+      if (fields_.size() > 1 && fields_.back().empty() && fields_.size() != table_.names.size()) fields_.pop_back();
       return fields_;
     }
     return fields_ = reader_.fields();
@@ -72,7 +73,10 @@ class TextTable {
     if (fields_.size() != width_)
       reader_.fail("found " + std::to_string(fields_.size()) + " fields, expected " + std::to_string(width_) +
                    " as in the first row");
-    for (const std::string_view field : fields_) numbers_.push_back(reader_.number(field));
+    for (const std::string_view field : fields_) {
+      const bool is_missing = field.empty() && !table_.names.empty();  // as pandas writes a nan
+      numbers_.push_back(is_missing ? std::numeric_limits<double>::quiet_NaN() : reader_.number(field));
+    }
     table_.lines.push_back(static_cast<int>(reader_.line_number()));
   }
 

@@ -112,10 +112,10 @@ std::uint64_t binary_size(std::string_view content) {
 }
 
 /// Many writers begin the title of a binary file with the word solid too, so the size decides. A file that fits neither form
-/// is treated as a damaged binary file if it contains a zero byte, which text does not.
+/// is treated as a damaged binary file if it contains a zero byte, which text does not, but for UTF-16.
 bool is_binary(std::string_view content) {
   if (content.size() >= kHeader && content.size() == binary_size(content)) return true;
-  return content.find('\0') != std::string_view::npos;
+  return content.find('\0') != std::string_view::npos && !is_utf16(content);
 }
 
 StoredMesh parse_binary(const std::string& path, std::string_view content) {

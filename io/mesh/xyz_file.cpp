@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Lists of points: one per line; further columns (colours, normals, intensities) are not read. In front may stand a line with
-// the names of the columns, and one with the number of points.
+// Lists of points: one per line; further columns (colours, intensities) are not read. In front may stand a line with the names
+// of the columns, and one with the number of points.
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
+#include <limits>
 #include <optional>
 
 #include "io/mesh/mesh_cleanup.h"
@@ -22,6 +24,25 @@ std::string plain_name(std::string_view name) {
   return plain;
 }
 
+/// Names of a column that counts the points; pandas has none for it.
+bool is_counter(const std::string& name) {
+  static constexpr const char* kNames[] = {"",   "id", "idx",   "index",   "unnamed: 0",
+                                           "no", "nr", "point", "pointid", "point_id"};
+  return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
+}
+
+/// Where in `names` those of three columns stand, each under one of its two names; -1 where it does not.
+std::array<int, 3> places_of(const std::array<std::array<const char*, 2>, 3>& wanted,
+                             const std::vector<std::string>& names) {
+  std::array<int, 3> places;
+  std::transform(wanted.begin(), wanted.end(), places.begin(), [&](const auto& either) {
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const std::string& name) { return name == either[0] || name == either[1]; });
+    return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+  });
+  return places;
+}
+
 class ListReader {
  public:
   ListReader(const std::string& path, std::string_view content) : reader_(path, content, '#') {}
@@ -34,6 +55,8 @@ class ListReader {
     if (numbers_.empty()) reader_.fail("no point, expected lines like '0 0 0'");
     StoredMesh cloud;
     cloud.vertices = points_of_rows(numbers_);
+    if (has_normals_) cloud.normals = points_of_rows(normals_);
+    if (!note_.empty()) cloud.notes.push_back(note_);
     if (count_) note_ending(reader_, "point", cloud.notes);
     return cleaned(std::move(cloud));
   }
@@ -51,29 +74,44 @@ class ListReader {
   }
 
   /// Leaves the reader at the first line behind the names, if there is one: fields that begin with a letter and are no
-  /// numbers. They say where x, y and z are, or else these are the first three columns.
+  /// numbers; the first may be empty.
   void read_header() {
     if (!reader_.next()) return;
-    std::vector<std::string> names;
     for (const std::string_view field : columns()) {
       if (field == "//") continue;
-      names.push_back(plain_name(field));
-      if (names.back().empty() || !std::isalpha(static_cast<unsigned char>(names.back()[0])) || parse_double(field))
+      const std::string name = plain_name(field);
+      const bool is_name = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) && !parse_double(field);
+      if (!is_name && !(name.empty() && names_.empty())) {
+        names_.clear();
         return;
+      }
+      names_.push_back(name);
     }
-    if (names.size() < 3) return;
-    int known = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::string name(1, "xyz"[axis]), other = "points:" + std::string(1, "012"[axis]);  // as ParaView writes it
-      const auto place = std::find_if(names.begin(), names.end(),
-                                      [&](const std::string& found) { return found == name || found == other; });
-      if (place == names.end()) continue;
-      axes_[axis] = static_cast<std::size_t>(place - names.begin());
-      ++known;
+    if (names_.size() < 3) {
+      names_.clear();
+      return;
     }
-    if (known == 1 || known == 2)
-      reader_.fail("found " + quoted(reader_.line()) + ", expected columns named x, y and z");
+    find_columns();
     reader_.next();
+  }
+
+  /// The names say where x, y and z are, or else these are the first three columns that do not count the points; and where the
+  /// normals are.
+  void find_columns() {
+    const auto axes = places_of({{{"x", "points:0"}, {"y", "points:1"}, {"z", "points:2"}}}, names_);  // of ParaView
+    const auto unknown = std::count(axes.begin(), axes.end(), -1);
+    const std::size_t first = is_counter(names_[0]) ? 1 : 0;
+    if (unknown == 1 || unknown == 2 || names_.size() < first + 3)
+      reader_.fail("found " + quoted(reader_.line()) + ", expected columns named x, y and z");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      axes_[axis] = unknown == 0 ? static_cast<std::size_t>(axes[axis]) : first + axis;
+    if (unknown > 0)
+      note_ = "the columns named " + quoted(names_[first]) + ", " + quoted(names_[first + 1]) + " and " +
+              quoted(names_[first + 2]) + " are read as x, y and z";
+    const auto normals = places_of({{{"nx", "normals:0"}, {"ny", "normals:1"}, {"nz", "normals:2"}}}, names_);
+    has_normals_ = std::count(normals.begin(), normals.end(), -1) == 0;
+    for (std::size_t axis = 0; axis < 3 && has_normals_; ++axis)
+      normal_axes_[axis] = static_cast<std::size_t>(normals[axis]);
   }
 
   /// Whether the reader is at a point, after a line with nothing but their number.
@@ -96,6 +134,12 @@ class ListReader {
     const auto& fields = columns();
     if (fields.size() <= *std::max_element(axes_.begin(), axes_.end()))
       reader_.fail("found " + quoted(reader_.line()) + ", expected at least the three coordinates of a point");
+    if (has_normals_ && fields.size() <= *std::max_element(normal_axes_.begin(), normal_axes_.end()))
+      reader_.fail("found " + quoted(reader_.line()) + ", expected a normal as the names say");
+    if (!names_.empty() && fields.size() == names_.size() + 1 &&
+        !fields.back().empty())  // R names no column of row names
+      reader_.fail("found " + std::to_string(fields.size()) + " columns, expected " + std::to_string(names_.size()) +
+                   " as there are names: which of them has none is not known");
     if (width_ == 0) {
       width_ = fields.size();
       first_line_ = reader_.line_number();
@@ -103,14 +147,24 @@ class ListReader {
     if (fields.size() != width_)
       reader_.fail("found " + std::to_string(fields.size()) + " columns, expected " + std::to_string(width_) +
                    " as in line " + std::to_string(first_line_));
-    for (const std::size_t column : axes_) numbers_.push_back(reader_.coordinate(fields[column]));
+    for (const std::size_t column : axes_) numbers_.push_back(coordinate(fields[column]));
+    for (std::size_t axis = 0; axis < 3 && has_normals_; ++axis) normals_.push_back(number(fields[normal_axes_[axis]]));
   }
 
+  /// In a table with names, as pandas writes it, an empty cell is a missing number; without, a decimal comma may be to blame.
+  bool is_missing(std::string_view field) const { return field.empty() && !names_.empty(); }
+  double coordinate(std::string_view field) const { return is_missing(field) ? kMissing : reader_.coordinate(field); }
+  double number(std::string_view field) const { return is_missing(field) ? kMissing : reader_.number(field); }
+
   LineReader reader_;
-  std::array<std::size_t, 3> axes_ = {0, 1, 2};
+  static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> names_;  // of the columns; empty where the file has none
+  std::string note_;
+  std::array<std::size_t, 3> axes_ = {0, 1, 2}, normal_axes_ = {};
+  bool has_normals_ = false;
   std::size_t width_ = 0, first_line_ = 0;
   std::optional<std::int64_t> count_;
-  std::vector<double> numbers_;
+  std::vector<double> numbers_, normals_;
 };
 
 }  // namespace

@@ -26,8 +26,15 @@ std::string quoted(std::string_view text) {
   return shown + (text.size() > 40 ? "...'" : "'");
 }
 
+bool is_utf16(std::string_view text) {
+  const std::string_view mark = text.substr(0, 2);
+  return mark == "\xFF\xFE" || mark == "\xFE\xFF";
+}
+
 LineReader::LineReader(const std::string& path, std::string_view text, char comment)
     : path_(path), text_(text), comment_(comment) {
+  if (is_utf16(text))
+    throw IoError(path, "byte 0", "found text in UTF-16, expected ASCII or UTF-8: save it in one of these");
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors put it in front of UTF-8
   if (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) text_.remove_prefix(kByteOrderMark.size());
   newline_ = std::min(text_.find('\n'), text_.size());

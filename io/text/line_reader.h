@@ -12,7 +12,8 @@ namespace corral {
 /// line. A line ends at LF, CRLF or CR. A last line without its end is an error: 1.2 could be 1.25 cut short.
 class LineReader {
  public:
-  /// Both must outlive the reader. Lines starting with `comment` are skipped, as are blank ones ('\0': no comments).
+  /// Both must outlive the reader. Lines starting with `comment` are skipped, as are blank ones ('\0': no comments). Throws
+  /// IoError if is_utf16(text).
   LineReader(const std::string& path, std::string_view text, char comment = '\0');
 
   /// Formats that differ: `comment` also ends a line behind other text; a line that ends in '\' goes on in the next one; the
@@ -59,6 +60,9 @@ class LineReader {
   std::vector<std::string_view> fields_;
   std::string joined_;  // a line with its continuations
 };
+
+/// Whether a text begins with a mark of UTF-16, as Windows writes it: no reader here takes it.
+bool is_utf16(std::string_view text);
 
 /// Text from a file in quotes, shortened and made printable for a message.
 std::string quoted(std::string_view text);

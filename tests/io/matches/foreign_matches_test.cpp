@@ -133,6 +133,14 @@ TEST_F(ForeignMatchesTest, RowsWithANanAreLeftOutAndCounted) {
   EXPECT_THAT(complaint([&] { read("nan 2 3 4 5 6\n"); }), HasSubstr("no row without a nan"));
 }
 
+TEST_F(ForeignMatchesTest, AnEmptyCellBelowNamesIsANan) {
+  const std::string names = "x1,y1,z1,x2,y2,z2\n";
+  const ForeignMatches found = read(names + "1,2,3,4,5,6\n1,,3,4,5,6\n1,2,3,4,5,\n7,8,9,1,2,3\n");
+  EXPECT_THAT(found.kept, ElementsAre(0, 3));
+  EXPECT_THAT(found.notes, ::testing::Contains("2 rows with a nan left out"));
+  EXPECT_THAT(complaint([&] { read("1,2,3,4,5,6\n1,,3,4,5,6\n"); }), HasSubstr("line 2: found ''"));
+}
+
 TEST_F(ForeignMatchesTest, MalformedTextIsNamedByItsLine) {
   EXPECT_THAT(complaint([&] { read("1 2 3 4 5 6\n1 2 3 4 5\n"); }), HasSubstr("line 2: found 5 fields, expected 6"));
   EXPECT_THAT(complaint([&] { read("1 2 3 4 5 6\n1 2 x 4 5 6\n"); }), HasSubstr("line 2: found 'x'"));

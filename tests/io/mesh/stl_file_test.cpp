@@ -152,6 +152,11 @@ TEST(StlFile, ABinaryFileMayBeginWithTheWordSolid) {
 }
 
 // A solid is whole behind the word endsolid: neither the name nor the newline must follow.
+TEST(StlFile, TextInUtf16IsNotTakenForABinaryFile) {
+  const std::string text("\xFF\xFEs\0o\0l\0i\0d\0", 12);
+  EXPECT_THAT(refusal(text + std::string(100, '\0')), ::testing::HasSubstr("UTF-16"));
+}
+
 TEST(StlFile, TruncationAtEveryByteIsAnError) {
   const std::string text = text_stl(kSquare), crlf = replaced(text, "\n", "\r\n");
   for (const std::string& whole : {binary_stl(kSquare), binary_stl(kSquare, 2, "solid part\n")})

@@ -91,6 +91,40 @@ TEST(XyzFile, ALineOfNamesMayStandInFront) {
   EXPECT_THAT(refusal("x y z\n"), HasSubstr("no point, expected"));
 }
 
+TEST(XyzFile, NormalsAreReadWhereTheNamesSayWhere) {
+  const std::string cloud = "0 0 0 9 0 0 1\n1 2 3 9 0.6 0.8 0\n";
+  Points normals(2, 3);
+  normals << 0, 0, 1, 0.6, 0.8, 0;
+  EXPECT_EQ(parse_xyz(kPath, "//X Y Z Intensity Nx Ny Nz\n" + cloud).normals, normals);
+  EXPECT_EQ(parse_xyz(kPath, "x y z i Normals:0 Normals:1 Normals:2\n" + cloud).normals, normals);
+  EXPECT_EQ(parse_xyz(kPath, "//X Y Z Intensity Nx Ny Cz\n" + cloud).normals.rows(), 0);
+  EXPECT_EQ(parse_xyz(kPath, cloud).normals.rows(), 0);
+  EXPECT_EQ(refusal("x y z nx ny nz\n1 2 3\n"), ", line 2: found '1 2 3', expected a normal as the names say");
+  EXPECT_EQ(refusal("x y z nx ny nz\n1 2 3 0 a 1\n"), ", line 2: found 'a', expected a number");
+}
+
+TEST(XyzFile, AColumnThatCountsThePointsIsNotX) {
+  const std::string counted = "0,0.5,-1,2e3\n1,1,2,3\n2,-0.25,0.125,4\n";
+  for (const char* names : {",x,y,z\n", "\"\",\"x\",\"y\",\"z\"\n", "id,x,y,z\n", ",east,north,height\n",
+                            "Index,E,N,H\n", "Unnamed: 0,a,b,c\n"})
+    expect_cloud(parse_xyz(kPath, names + counted));
+  EXPECT_THAT(parse_xyz(kPath, "Index,E,N,H\n" + counted).notes,
+              ElementsAre("the columns named 'e', 'n' and 'h' are read as x, y and z"));
+  EXPECT_EQ(refusal("id,east,north\n1,2,3\n"), ", line 1: found 'id,east,north', expected columns named x, y and z");
+  // So R writes the names of rows.
+  EXPECT_EQ(refusal("x y z\n" + replaced(counted, ",", " ")),
+            ", line 2: found 4 columns, expected 3 as there are names: which of them has none is not known");
+}
+
+TEST(XyzFile, AnEmptyCellBelowNamesIsAMissingNumber) {
+  const StoredMesh cloud = parse_xyz(kPath, "x,y,z,nx,ny,nz\n1,2,3,0,0,1\n4,,6,0,0,1\n7,8,9,0,,1\n");
+  EXPECT_EQ(cloud.vertices.rows(), 2);
+  EXPECT_EQ(cloud.normals.row(0), Eigen::RowVector3d(0, 0, 1));
+  EXPECT_EQ(cloud.normals.row(1), Eigen::RowVector3d(0, 0, 0));
+  EXPECT_THAT(cloud.notes, ::testing::Contains("1 vertex with a nan coordinate was left out"));
+  EXPECT_EQ(refusal("1,2,3\n4,,6\n"), ", line 2: found '', expected a number");
+}
+
 TEST(XyzFile, ALineWithTheNumberOfPointsIsChecked) {
   expect_cloud(parse_xyz(kPath, "3\n" + kCloud));
   expect_cloud(parse_xyz(kPath, "//X Y Z\n3\n" + kCloud));

@@ -152,6 +152,16 @@ TEST(LineReader, IntegersAreWholeAndInRange) {
               "some.txt, line 1: a corner is '" + std::string(bad) + "', expected a whole number in -3 .. 3");
 }
 
+TEST(LineReader, TextInUtf16IsNamed) {
+  for (const char* text : {"\xFF\xFE"
+                           "1",
+                           "\xFE\xFF"})
+    EXPECT_THAT(testing::complaint(kPath, [&] { LineReader(kPath, text); }),
+                HasSubstr("found text in UTF-16, expected ASCII or UTF-8"))
+        << text;
+  EXPECT_FALSE(is_utf16("\xFE"));
+}
+
 TEST(LineReader, QuotesAreShortAndPrintable) {
   EXPECT_EQ(corral::quoted(""), "''");
   EXPECT_EQ(corral::quoted(std::string("a\x1b[2J\0\xff", 7)),
