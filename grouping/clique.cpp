@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "grouping/columns/canonical_order.h"
 #include "grouping/columns/compatibility.h"
@@ -89,13 +90,15 @@ class Grouping {
   /// Of all cliques as large as `first` that whose distances differ least; of equals the first in the order of lists.
   Indices tightest(const CorrespondenceSet& matches, MaxCliqueSearch& search, const Indices& first) {
     Indices best = first;
-    double smallest = sum_of_differences(matches, first);
+    std::optional<double> smallest;  // of the best, once it is compared
     std::int64_t cliques = 0;
     const bool is_complete = search.visit_all(static_cast<int>(first.size()), options_.max_steps / kStepsPerComparison,
                                               [&](const Indices& clique) {
                                                 ++cliques;
+                                                if (clique == best) return;
+                                                if (!smallest) smallest = sum_of_differences(matches, best);
                                                 const double sum = sum_of_differences(matches, clique);
-                                                if (sum < smallest || (sum == smallest && clique < best))
+                                                if (sum < *smallest || (sum == *smallest && clique < best))
                                                   best = clique, smallest = sum;
                                               });
     notes_.push_back({"equal_cliques", cliques});

@@ -7,6 +7,7 @@
 
 #include "grouping/columns/canonical_order.h"
 #include "grouping/columns/compatibility.h"
+#include "kernel/elementary.h"
 
 namespace corral {
 namespace {
@@ -29,9 +30,9 @@ class Vote {
     const double stretch = (lengths.source - lengths.target) / scale_;
     if (has_frames_[static_cast<std::size_t>(i)] && has_frames_[static_cast<std::size_t>(j)]) {
       const double turn = angle(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) / scale_rad_;
-      return std::exp(-stretch * stretch - turn * turn);
+      return exponential(-stretch * stretch - turn * turn);
     }
-    return optional_ ? std::exp(-stretch * stretch) : 0;
+    return optional_ ? exponential(-stretch * stretch) : 0;
   }
 
  private:
@@ -40,7 +41,7 @@ class Vote {
     const Eigen::Matrix3d source = matches_.source_frames[i] * matches_.source_frames[j].transpose(),
                           target = matches_.target_frames[i] * matches_.target_frames[j].transpose();
     const double half = std::min(1.0, (target - source).norm() / std::sqrt(8.0));  // sine of half the angle
-    return 2 * std::asin(half);
+    return 2 * arc_sine(half);
   }
 
   const CorrespondenceSet& matches_;

@@ -13,6 +13,7 @@
 #include "grouping/graph/induced_subgraph.h"
 #include "grouping/graph/maximal_cliques.h"
 #include "grouping/pose/pose_choice.h"
+#include "kernel/elementary.h"
 #include "kernel/weighted_fit.h"
 
 namespace corral {
@@ -24,7 +25,7 @@ constexpr double kCrowded = 3;        // coefficients above which only the best 
 constexpr std::ptrdiff_t kLeft = 50;  // about so many
 
 /// The difference of distances at which the compatibility falls to the gate.
-double edge_pr(double gate) { return kAlphaPr * std::sqrt(-2 * std::log(gate)); }
+double edge_pr(double gate) { return kAlphaPr * std::sqrt(-2 * logarithm(gate)); }
 
 PoseRule rule_of(const MacOptions& options) {
   return {options.score, options.tolerance_pr, options.refit_rounds, options.keep};
@@ -147,7 +148,7 @@ class Grouping {
     weights_.replace_each([&](int i, int j, double) {
       const PairDistances lengths = pair_distances(matches_, i, j);
       const double d = (lengths.source - lengths.target) / alpha;
-      return std::exp(-d * d / 2);
+      return exponential(-d * d / 2);
     });
     weights_.set(weights_.path_sums());
     for (int i = 0; i < graph_.size(); ++i)
@@ -159,7 +160,7 @@ class Grouping {
   /// c: the sum over the pairs of neighbours, which the sum of paths counts twice, by their number.
   void measure_connectedness() {
     EdgeWeights roots = weights_;
-    roots.replace_each([](int, int, double weight) { return std::cbrt(weight); });
+    roots.replace_each([](int, int, double weight) { return cube_root(weight); });
     roots.set(roots.path_sums());
     double all_sums = 0, all_pairs = 0;
     for (int i = 0; i < graph_.size(); ++i) {
@@ -245,8 +246,10 @@ GroupingResult group_by_mac(const CorrespondenceSet& matches, const MacOptions& 
 double working_memory(int matches, const MacOptions& options) {
   const double pairs = 1.0 * matches * matches, hypotheses = 1.0 * options.cliques_per_node * matches;
   // The weights of edges; then those behind c, or the cliques that matches name.
-  const double later = std::max(EdgeWeights::memory(matches) + 8 * pairs, 4 * options.cliques_per_node * pairs);
-  return canonical_order_memory(matches) + BitGraph::memory(matches) + EdgeWeights::memory(matches) + later +
+  const double later =
+      std::max(EdgeWeights::memory(matches, pairs) + 8 * pairs + 8 * EdgeWeights::matrix_entries(matches),
+               4 * options.cliques_per_node * pairs);
+  return canonical_order_memory(matches) + BitGraph::memory(matches) + EdgeWeights::memory(matches, pairs) + later +
          maximal_cliques_memory(matches) + 100 * hypotheses + PoseChoice::memory(matches, hypotheses, rule_of(options));
 }
 

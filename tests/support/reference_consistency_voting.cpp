@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/elementary.h"
+
 namespace corral::reference {
 
 Selection consistency_voting(const CorrespondenceSet& matches, const ConsistencyVotingOptions& options) {
@@ -27,12 +29,12 @@ Selection consistency_voting(const CorrespondenceSet& matches, const Consistency
       const double d = ((matches.source_points.row(i) - matches.source_points.row(j)).norm() -
                         (matches.target_points.row(i) - matches.target_points.row(j)).norm()) /
                        matches.resolution;
-      double worth = std::exp(-std::pow(d / options.scale_pr, 2));
+      double worth = exponential(-std::pow(d / options.scale_pr, 2));
       if (has_frames(a) && has_frames(b)) {
         const Eigen::Matrix3d relative = (matches.target_frames[a] * matches.target_frames[b].transpose()) *
                                          (matches.source_frames[a] * matches.source_frames[b].transpose()).transpose();
         const double deg = Eigen::AngleAxisd(relative).angle() * 180 / std::acos(-1.0);
-        worth *= std::exp(-std::pow(deg / options.scale_deg, 2));
+        worth *= exponential(-std::pow(deg / options.scale_deg, 2));
       } else if (options.frames == FrameNeed::Required) {
         worth = 0;
       }

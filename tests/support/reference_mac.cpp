@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "kernel/elementary.h"
 #include "kernel/weighted_fit.h"
 #include "tests/support/reference_pose_choice.h"
 
@@ -19,7 +20,7 @@ Eigen::MatrixXd weights_of(const CorrespondenceSet& matches, double gate) {
   for (int i = 0; i < matches.size(); ++i)
     for (int j = 0; j < matches.size(); ++j) {
       const double d = pair_lengths(matches, i, j).difference / matches.resolution;
-      const double compatibility = std::exp(-d * d / 200);
+      const double compatibility = exponential(-d * d / 200);
       if (i != j && compatibility > gate) g(i, j) = compatibility;
     }
   return g.cwiseProduct(g * g);
@@ -56,7 +57,7 @@ std::vector<int> thinned(const Eigen::MatrixXd& w) {
     double sum = 0, count = 0;
     for (int a = 0; a < w.rows(); ++a)
       for (int b = 0; b < a; ++b)
-        if (w(i, a) > 0 && w(i, b) > 0) ++count, sum += std::cbrt(w(i, a) * w(i, b) * w(a, b));
+        if (w(i, a) > 0 && w(i, b) > 0) ++count, sum += cube_root(w(i, a) * w(i, b) * w(a, b));
     nodes.push_back(i);
     c.push_back(count > 0 ? sum / count : 0);
     sums += sum, pairs += count, mean += c.back() / static_cast<double>(w.rows());
