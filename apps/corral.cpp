@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
   corral::add_triangulate(app, action);
   corral::add_evaluate(app, action);
   corral::add_plan(app, action);
+  corral::add_calibrate(app, action);
   corral::add_merge(app, action);
   corral::add_submit(app, action);
   corral::add_dataset(app, action);

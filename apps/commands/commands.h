@@ -33,6 +33,7 @@ void add_perturb(CLI::App& app, Action& action);
 void add_transform(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 void add_submit(CLI::App& app, Action& action);

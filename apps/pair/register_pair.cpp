@@ -270,9 +270,9 @@ class PairRegistration {
             -std::log(0.01 + uncertainty_pr(pose, rows, m)),
             static_cast<double>(agreeing) / static_cast<double>(std::max<std::size_t>(result_.methods.size(), 1)),
             best.overlap,
-            -best.rms_pr / 4,
-            -best.in_front,
-            -std::log(1 + best.moved_pr)};
+            0 - best.rms_pr / 4,
+            0 - best.in_front,
+            0 - std::log(1 + best.moved_pr)};
   }
 
   const CorrespondenceSet& matches_;

@@ -2,6 +2,7 @@
 // corral register: two scans without a truth, one pose.
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
+#include "apps/pair/confidence.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/match_report.h"
@@ -21,7 +22,7 @@ namespace corral {
 namespace {
 
 struct Settings {
-  std::string source, target, matches, output, apply, picture;
+  std::string source, target, matches, output, apply, picture, confidence;
   TruthSettings truth;
   MatchSettings match;
   std::vector<std::string> set;
@@ -62,7 +63,40 @@ Json to_json(const ProposedPose& pose) {
           {"in_front", pose.in_front}};
 }
 
-Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors) {
+/// What to do with a pose of this probability.
+const char* verdict(double probability) {
+  return probability >= 0.9 ? "trust it" : probability >= 0.5 ? "look at it" : "do not use it";
+}
+
+/// The first signal beyond those of the poses that the model was fitted to; kSignals if there is none.
+std::size_t outside(const ConfidenceModel& model, const ConfidenceSignals& signals) {
+  std::size_t k = 0;
+  while (k < kSignals && signals[k] >= model.low[k] && signals[k] <= model.high[k]) ++k;
+  return k;
+}
+
+Json confidence_json(const Registration& found, const ConfidenceModel& model) {
+  if (!found.signals) return nullptr;
+  const double probability = model.probability(*found.signals);
+  const std::size_t beyond = outside(model, *found.signals);
+  return {{"probability", probability},
+          {"verdict", verdict(probability)},
+          {"for", kSignalNames[model.strongest(*found.signals)]},
+          {"against", kSignalNames[model.weakest(*found.signals)]},
+          {"outside", beyond < kSignals ? Json(kSignalNames[beyond]) : Json(nullptr)}};
+}
+
+std::string confidence_text(const Registration& found, const ConfidenceModel& model) {
+  if (!found.signals) return "";
+  const double probability = model.probability(*found.signals);
+  const std::size_t beyond = outside(model, *found.signals);
+  return std::string(verdict(probability)) + ": probability " + fixed(probability, 3) + " that it registers the pair, as on the " +
+         std::to_string(model.pairs) + " pairs that this was learned from; most for it: " +
+         kSignalNames[model.strongest(*found.signals)] + ", least: " + kSignalNames[model.weakest(*found.signals)] +
+         (beyond < kSignals ? std::string("; outside of what those pairs had: ") + kSignalNames[beyond] : "") + "\n";
+}
+
+Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors, const ConfidenceModel& model) {
   Json poses = Json::array(), signals = nullptr, error = nullptr;
   for (const ProposedPose& pose : found.poses) poses.push_back(to_json(pose));
   if (found.signals) {
@@ -74,7 +108,8 @@ Json to_json(const Registration& found, int matches, const std::optional<PoseErr
              {"translation_error_pr", errors->translation_error_pr},
              {"mean_error_pr", errors->points ? Json(errors->points->mean_pr) : Json(nullptr)},
              {"registers", is_registered(errors)}};
-  return {{"matches", matches}, {"methods", found.methods}, {"poses", poses}, {"signals", signals}, {"errors", error}};
+  return {{"matches", matches}, {"methods", found.methods}, {"poses", poses}, {"signals", signals},
+          {"confidence", confidence_json(found, model)}, {"errors", error}};
 }
 
 std::string in_words(const Registration& found, bool has_surfaces) {
@@ -105,6 +140,9 @@ int register_two(Settings settings) {
   require_in_use(options, settings.match.in_use());
   settings.match.options = surface_part(options);
   check(settings);
+  const ConfidenceModels models = settings.confidence.empty()
+                                      ? built_in_confidence()
+                                      : parse_confidence(settings.confidence, read_file(settings.confidence));
   std::optional<RigidTransform> truth;
   if (!settings.truth.empty()) truth = read_truth(settings.truth);
   std::optional<Surfaces> surfaces;
@@ -140,10 +178,11 @@ int register_two(Settings settings) {
     if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
     if (!settings.picture.empty()) draw(settings, *surfaces, pose);
   }
+  const ConfidenceModel& model = surfaces ? models.surfaces : models.table;
   if (settings.json)
-    put("", to_json(found, pair.matches.size(), errors));
+    put("", to_json(found, pair.matches.size(), errors, model));
   else
-    put("", in_words(found, surfaces.has_value()));
+    put("", in_words(found, surfaces.has_value()) + confidence_text(found, model));
   return found.poses.empty() ? kPartial : kOk;
 }
 
@@ -161,6 +200,9 @@ void add_register(CLI::App& app, Action& action) {
   command->add_option("-o,--output", settings->output, "The pose, 4x4, target from source")->type_name("FILE");
   command->add_option("--apply", settings->apply, "The source, moved onto the target: a PLY file")->type_name("FILE");
   command->add_option("--picture", settings->picture, "A picture of both under the pose")->type_name("FILE.png");
+  command
+      ->add_option("--confidence", settings->confidence, "The model of 'corral calibrate' (default: of made scans, paper/README.md)")
+      ->type_name("FILE");
   add_truth_options(*command, settings->truth, ": adds the errors of the pose to --json");
   command->add_flag("--json", settings->json, "Poses with what speaks for each, as JSON");
   add_match_options(*command, settings->match);

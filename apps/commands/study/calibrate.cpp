@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// corral calibrate: how far the poses of 'corral register' can be trusted, learned from pairs with a truth.
+#include <algorithm>
+#include <mutex>
+
+#include "apps/commands/command_files.h"
+#include "apps/commands/command_options.h"
+#include "apps/pair/confidence.h"
+#include "apps/pair/evaluate_pair.h"
+#include "apps/pair/match_pair.h"
+#include "apps/pair/read_surface.h"
+#include "apps/runtime/output.h"
+#include "apps/runtime/progress.h"
+#include "apps/runtime/text_table.h"
+#include "apps/runtime/workers.h"
+#include "io/disk/file.h"
+#include "io/matches/matches_file.h"
+#include "io/pairs/dataset_file.h"
+#include "io/pose/transform_file.h"
+#include "kernel/error.h"
+
+namespace corral {
+namespace {
+
+struct Settings {
+  std::vector<std::string> data, tests;
+  std::string output;
+  int threads = 0;
+  bool json = false;
+};
+
+/// The best poses of a pair, by the surfaces and by the table alone.
+struct JudgedPair {
+  std::optional<JudgedPose> surfaces, table;
+};
+
+std::string group_of(const Dataset& dataset, const DatasetPair& pair) {
+  for (const char* column : {"object", "model", "scene"}) {
+    const std::string text = attribute_text(dataset, pair, column);
+    if (!text.empty()) return text;
+  }
+  return pair.name;
+}
+
+JudgedPair judge_pair(const Dataset& dataset, const DatasetPair& given) {
+  const DatasetPair pair = dataset.with_paths(given);
+  std::optional<Mesh> source, target;
+  if (pair.has_surfaces()) source = read_surface(pair.source), target = read_surface(pair.target);
+  CorrespondenceSet matches;
+  if (pair.matches.empty()) {
+    MatchSettings settings;
+    settings.resolution = dataset.resolution;
+    settings.threads = 1;
+    matches = match_pair(*source, *target, settings).matches;
+  } else {
+    matches = read_matches(pair.matches);
+  }
+  const RigidTransform pose = read_transform(pair.truth);
+  PairTruth truth = source ? pair_truth(*source, *target, pose, matches.resolution, 4) : table_truth(matches, pose, 4);
+  for (const std::string& equal : pair.equal_truths) truth.equals.push_back(read_transform(equal));
+  const auto judged = [&](const Registration& found) -> std::optional<JudgedPose> {
+    if (found.poses.empty()) return std::nullopt;
+    const auto errors = pose_errors(found.poses.front().target_from_source, truth, matches.resolution);
+    return JudgedPose{*found.signals, is_registered(errors), group_of(dataset, given)};
+  };
+  JudgedPair result;
+  if (source) result.surfaces = judged(register_pair(matches, RegisteredSurfaces{*source, *target, {}}));
+  result.table = judged(register_pair(matches, std::nullopt));
+  return result;
+}
+
+struct JudgedSet {
+  std::vector<JudgedPose> surfaces, table;
+};
+
+/// Every pair with a truth; those that cannot be read or matched are named on stderr.
+JudgedSet judge_sets(const std::vector<std::string>& folders, int threads) {
+  struct Work {
+    const Dataset* dataset;
+    const DatasetPair* pair;
+  };
+  std::vector<Dataset> datasets;
+  for (const std::string& folder : folders) datasets.push_back(read_dataset(folder));
+  std::vector<Work> work;
+  for (const Dataset& dataset : datasets)
+    for (const DatasetPair& pair : dataset.pairs)
+      if (!pair.truth.empty()) work.push_back({&dataset, &pair});
+  std::vector<JudgedPair> judged(work.size());
+  std::vector<std::string> failures(work.size());
+  Progress progress(static_cast<double>(work.size()));
+  std::mutex talking;
+  workers(threads)(static_cast<int>(work.size()), [&](int i) {
+    const auto [dataset, pair] = work[static_cast<std::size_t>(i)];
+    {
+      const std::lock_guard<std::mutex> lock(talking);
+      progress.begin(dataset->name + " " + pair->name);
+    }
+    try {
+      judged[static_cast<std::size_t>(i)] = judge_pair(*dataset, *pair);
+    } catch (const std::runtime_error& error) {
+      failures[static_cast<std::size_t>(i)] = error.what();
+    } catch (const std::invalid_argument& error) {
+      failures[static_cast<std::size_t>(i)] = error.what();
+    }
+  });
+  JudgedSet set;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (!failures[i].empty()) say("warning: " + work[i].pair->name + ": " + failures[i]);
+    if (judged[i].surfaces) set.surfaces.push_back(std::move(*judged[i].surfaces));
+    if (judged[i].table) set.table.push_back(std::move(*judged[i].table));
+  }
+  return set;
+}
+
+Json row(const std::string& set, const std::string& by, const Reliability& found) {
+  return {{"set", set},
+          {"poses", by},
+          {"pairs", found.pairs},
+          {"right", found.right},
+          {"brier", found.brier},
+          {"area", found.area},
+          {"calibration_error", found.calibration_error},
+          {"kept", found.kept},
+          {"kept_right", found.kept_right}};
+}
+
+std::vector<double> probabilities(const ConfidenceModel& model, const std::vector<JudgedPose>& poses) {
+  std::vector<double> found;
+  for (const JudgedPose& pose : poses) found.push_back(model.probability(pose.signals));
+  return found;
+}
+
+int calibrate(const Settings& settings) {
+  if (!settings.output.empty()) check_writable(settings.output);
+  const JudgedSet set = judge_sets(settings.data, settings.threads);
+  ConfidenceModels models = built_in_confidence();  // that of surfaces stays where there are none
+  std::vector<Json> rows;
+  if (!set.surfaces.empty()) {
+    models.surfaces = fit_confidence(set.surfaces);
+    rows.push_back(row("held out", "surfaces", reliability(held_out_probabilities(set.surfaces), set.surfaces)));
+  }
+  models.table = fit_confidence(set.table);
+  rows.push_back(row("held out", "table", reliability(held_out_probabilities(set.table), set.table)));
+  for (const std::string& folder : settings.tests) {
+    const JudgedSet test = judge_sets({folder}, settings.threads);
+    if (!test.surfaces.empty())
+      rows.push_back(row(folder, "surfaces", reliability(probabilities(models.surfaces, test.surfaces), test.surfaces)));
+    rows.push_back(row(folder, "table", reliability(probabilities(models.table, test.table), test.table)));
+  }
+  if (!settings.output.empty()) write_file(settings.output, confidence_text(models));
+  if (settings.json)
+    put("", Json(rows));
+  else
+    put("", table_text(rows, {{"set", "set"},
+                              {"poses by", "poses"},
+                              {"pairs", "pairs"},
+                              {"right", "right"},
+                              {"Brier", "brier", 3},
+                              {"area under ROC", "area", 3},
+                              {"calibration error", "calibration_error", 3},
+                              {"at 0.9: kept", "kept"},
+                              {"right", "kept_right"}}));
+  return kOk;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Action& action) {
+  auto* command = app.add_subcommand(
+      "calibrate", "How far the poses of 'corral register' can be trusted, learned from pairs with a truth");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("data", settings->data, "Data sets whose pairs have truths; some must fail")
+      ->type_name("FOLDER")
+      ->required();
+  command->add_option("--test", settings->tests, "Data sets on which the result is judged")->type_name("FOLDER");
+  command->add_option("-o,--output", settings->output, "The model, for 'corral register --confidence'")->type_name("FILE");
+  add_threads(*command, settings->threads);
+  command->add_flag("--json", settings->json, "The table as JSON");
+  command->footer(
+      "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose is right if its\n"
+      "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the pairs of\n"
+      "every object by a model of the others.\n"
+      "Example:\n  corral calibrate data/u3m data/u3or --test my-scans -o confidence.toml");
+  command->callback([settings, &action] { action = [settings] { return calibrate(*settings); }; });
+}
+
+}  // namespace corral
