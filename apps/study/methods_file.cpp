@@ -15,7 +15,8 @@ namespace {
 std::string name_of(const TomlTable& table) {
   const std::string name = table.text("name").value_or("");
   if (!is_method_name(name))
-    table.fail("name", corral::quoted(name) + ", expected letters, digits and . _ + - only, and no name of a grouper");
+    table.fail("name", "found " + corral::quoted(name) +
+                           ", expected name = \"...\" of letters, digits and . _ + - only, and none that is in every study");
   return name;
 }
 

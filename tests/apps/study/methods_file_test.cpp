@@ -72,7 +72,7 @@ TEST(MethodsFile, EveryErrorIsNamedWithItsLine) {
               AllOf(HasSubstr("line 2"), HasSubstr("letters")));
   for (const char* taken : {"gc", "oracle", "baseline"})
     EXPECT_THAT(refusal("[[method]]\nname = \"" + std::string(taken) + "\"\nlabels = \"a\"\n"),
-                HasSubstr("is in every study, expected another name"));
+                HasSubstr("none that is in every study"));
   EXPECT_THAT(refusal("[[method]]\nname = \"a\"\n"), HasSubstr("expected labels"));
   EXPECT_THAT(refusal("[[method]]\nname = \"a\"\nlabel = \"a\"\n"), HasSubstr("did you mean"));
   EXPECT_THAT(refusal("[[method]]\nname = \"a\"\nlabels = \"a\"\ntime_ms = -1\n"), HasSubstr("at least zero"));
