@@ -8,7 +8,7 @@
 namespace corral::peers {
 namespace {
 
-TwoNearest search_exactly(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target,
+FlannNearest search_exactly(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target,
                           const flann::IndexParams& params) {
   if (target.cols() < 2) throw std::invalid_argument("FLANN is asked for two neighbours: at least two targets");
   // FLANN takes rows, which in a column-major matrix are our columns; it does not write to what it is given.
@@ -27,7 +27,7 @@ TwoNearest search_exactly(const Eigen::MatrixXf& source, const Eigen::MatrixXf& 
   exact.cores = 1;
   index.knnSearch(wrap(source), columns_out, squared_out, 2, exact);
 
-  TwoNearest found;
+  FlannNearest found;
   for (std::size_t i = 0; i < count; ++i) {
     found.first.push_back(columns[2 * i]);
     found.second.push_back(columns[2 * i + 1]);
@@ -39,11 +39,11 @@ TwoNearest search_exactly(const Eigen::MatrixXf& source, const Eigen::MatrixXf& 
 
 }  // namespace
 
-TwoNearest match_with_flann_linear(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target) {
+FlannNearest match_with_flann_linear(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target) {
   return search_exactly(source, target, flann::LinearIndexParams());
 }
 
-TwoNearest match_with_flann_tree(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target) {
+FlannNearest match_with_flann_tree(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target) {
   return search_exactly(source, target, flann::KDTreeSingleIndexParams(15));
 }
 

@@ -200,7 +200,7 @@ PclMatch match_with_pcl(PclSurface& source, PclSurface& target) {
   match.resolution = (source.resolution() + target.resolution()) / 2;
   Described on_source = describe_keypoints(source, match.resolution);
   Described on_target = describe_keypoints(target, match.resolution);
-  TwoNearest found = match_with_flann_tree(on_source.features, on_target.features);
+  FlannNearest found = match_with_flann_tree(on_source.features, on_target.features);
   match.source_keypoints = std::move(on_source.vertices);
   match.target_keypoints = std::move(on_target.vertices);
   match.nearest = std::move(found.first);
