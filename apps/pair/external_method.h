@@ -29,15 +29,17 @@ ExternalMethod parse_external(const std::string& text);
 /// Letters, digits and . _ + -, none of the names that every study has.
 bool is_method_name(const std::string& name);
 
-/// The answer of a call: the table is written to {matches} as read_matches reads it, then {group} is read (read_selection: a
-/// group file, labels or rows), and {pose}, if it was written (read_transform). A pose alone selects every match within
-/// kStatedPosePr.
-/// Throws    InvalidInput saying what is wrong: the status or signal that it ended with, the limit that it met, a file that it
-///           did not write, or what is in that. The end of its messages is part of it.
+/// What a call gave.
 struct ExternalAnswer {
   GroupingResult found;
   double time_ms = 0;  ///< wall time of the call, its start-up included
 };
+
+/// Calls the program: the table is written to {matches} as read_matches reads it, then {group} is read (read_selection: a
+/// group file, labels or rows), and {pose}, if it was written (read_transform). A pose alone selects every match within
+/// kStatedPosePr.
+/// Throws    std::runtime_error saying what is wrong: the status or signal that it ended with, the limit that it met, a file that it
+///           did not write, or what is in that. The end of its messages is part of it.
 ExternalAnswer call_external(const ExternalMethod& method, const CorrespondenceSet& matches);
 
 /// Wall time of a call with a table without rows, whatever its answer: what it takes to start. Taken once for each command.

@@ -94,10 +94,10 @@ void add_conformance(CLI::App& app, Action& action) {
       ->type_name("FOLDER");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
-      "A grouper answers without matches and with 1 to 3, names rows of the table, ascending, and leaves out or refuses what\n"
-      "is not finite. It selects the same twice, in any order of the rows, in any unit of length, and when the target is\n"
-      "moved; and it helps on an easy table. The exit status is 4 if a check is broken. RANSAC and ST break one: numbers of rows\n"
-      "decide what is drawn, and between equals.\n"
+      "A grouper must accept a table of 0 to 3 matches; return rows of the table in ascending order; refuse or leave out a match\n"
+      "that is not finite; return the same rows when it is called again, when the rows are shuffled, when the unit of length changes\n"
+      "and when the target is moved; and solve an easy table. The exit status is 4 if a check is broken. RANSAC and ST break the\n"
+      "check of the order: RANSAC draws by row number, and ST breaks ties by it.\n"
       "Examples:\n  corral conformance gc,ransac\n"
       "  corral conformance --external \"mine=python3 mine.py {matches} {group}\" -o broken");
   command->callback([settings, &action] { action = [settings] { return check(*settings); }; });

@@ -169,10 +169,10 @@ void add_calibrate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "calibrate", "How far the poses of 'corral register' can be trusted, learned from pairs with a truth");
   auto settings = std::make_shared<Settings>();
-  command->add_option("data", settings->data, "Data sets whose pairs have truths; some must fail")
+  command->add_option("data", settings->data, "Data sets whose pairs have truths; ten poses must be right and ten wrong, at least")
       ->type_name("FOLDER")
       ->required();
-  command->add_option("--test", settings->tests, "Data sets on which the result is judged")->type_name("FOLDER");
+  command->add_option("--test", settings->tests, "Data sets on which the model is then tested")->type_name("FOLDER");
   command->add_option("-o,--output", settings->output, "The model, for 'corral register --confidence'")->type_name("FILE");
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "The table as JSON");
