@@ -85,15 +85,18 @@ int main(int argc, char** argv) {
   corral::add_triangulate(app, action);
   corral::add_evaluate(app, action);
   corral::add_plan(app, action);
+  corral::add_advise(app, action);
   corral::add_calibrate(app, action);
   corral::add_merge(app, action);
   corral::add_submit(app, action);
+  corral::add_scoreboard(app, action);
   corral::add_dataset(app, action);
   corral::add_compare(app, action);
   corral::add_claims(app, action);
   corral::add_draw(app, action);
   corral::add_report(app, action);
   corral::add_align(app, action);
+  corral::add_manual(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

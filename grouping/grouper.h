@@ -33,6 +33,7 @@ struct GroupingResult {
   std::vector<ScoredPose>
       runner_up;            ///< poses far from the chosen one and from each other, the best first; if asked for
   std::vector<Note> notes;  ///< empty if there is nothing to say
+  std::optional<double> confidence = {};  ///< probability that its pose is right, of a method that states one
 };
 
 // With each grouper is declared

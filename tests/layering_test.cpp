@@ -32,8 +32,8 @@ const Names kAppLibraries = {"Eigen", "CLI", "nlohmann", "oneapi", "boost"};
 
 /// The rooms of apps/ from the lowest to the highest: none includes one above it.
 const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "apps/pair",  "apps/align",
-                                             "apps/dataset", "apps/results", "apps/study", "apps/claims",
-                                             "apps/report",  "apps/commands"};
+                                             "apps/dataset", "apps/results", "apps/advise", "apps/study", "apps/claims",
+                                             "apps/report",  "apps/scoreboard",  "apps/commands"};
 
 /// Rooms by folder, or by file; the longest that fits a file is its room.
 std::map<std::string, Room> make_rooms() {
@@ -86,6 +86,7 @@ std::map<std::string, Room> make_rooms() {
   rooms["apps/report/figure"] = {under_figures, kAppLibraries};
   rooms["apps/report/figure"].libraries.insert("fontconfig");  // measures text
   rooms["apps"] = {below, kAppLibraries};                      // the program itself
+  rooms["apps/plugin-template"] = {{"grouping"}, {}};
   Names for_python = {"apps/python/module", "apps/pair", "apps/runtime"};  // as its CMakeLists.txt builds it
   for (const auto& [room, rules] : rooms)
     if (room.rfind("apps", 0) != 0) for_python.insert(room);

@@ -6,16 +6,12 @@
 #include <tuple>
 #include <utility>
 
+#include "apps/pair/confidence.h"
 #include "apps/pair/match_pair.h"
-#include "grouping/registry.h"
-#include "refine/refine_rigid.h"
+#include "apps/pair/register_pair.h"
 
 namespace corral {
 namespace {
-
-/// Each finds pairs that the others miss; the fit of the surfaces decides between them.
-const std::vector<std::pair<std::string, OptionOverrides>> kMethods = {
-    {"ransac", {{"iterations", "100000"}}}, {"gc", {}}, {"si", {}}, {"hough", {}}};
 
 constexpr double kLeastTrust = 0.01;
 constexpr int kMostRounds = 10;
@@ -54,17 +50,19 @@ class SetAlignment {
       const CorrespondenceSet matches = match_surfaces(
           {views_.mesh(a), features[static_cast<std::size_t>(a)].descriptors},
           {views_.mesh(b), features[static_cast<std::size_t>(b)].descriptors}, views_.resolution(), settings);
-      std::vector<RigidTransform> starts;
-      for (const auto& [name, overrides] : kMethods) {
-        const GroupingResult found = find_grouper(name).configure(overrides).group(matches);
-        if (const auto pose = refine_rigid(matches, found.selected).target_from_source) starts.push_back(*pose);
-      }
-      return best_of(a, b, starts);
+      const Registration found =
+          register_pair(matches, RegisteredSurfaces{views_.mesh(a), views_.mesh(b), views_.side(a), views_.side(b)});
+      if (found.poses.empty()) return PossiblePair();
+      const double confidence = built_in_confidence().surfaces.probability(*found.signals);
+      if (confidence < kDoubted) return PossiblePair();
+      PossiblePair pair = best_of(a, b, {found.poses.front().target_from_source});
+      if (pair) pair->confidence = confidence;
+      return pair;
     });
   }
 
   void add(const ViewPair& pose) {
-    AlignedPair pair{pose, views_.agreement(pose.a, pose.b, pose.b_from_a), false, {}};
+    AlignedPair pair{pose, views_.agreement(pose.a, pose.b, pose.b_from_a), false, {}, {}};
     pair.pose.weight *= trust(pair.agreement);
     result_.pairs.push_back(std::move(pair));
   }
@@ -127,7 +125,7 @@ class SetAlignment {
       if (!pose || views_.share_in_front(a, b, *pose) > options_.most_in_front) continue;
       const ViewAgreement agreement = views_.agreement(a, b, *pose);
       if (agreement.overlap >= options_.least_overlap && (!best || agreement.overlap > best->agreement.overlap))
-        best = AlignedPair{{a, b, *pose, trust(agreement)}, agreement, false, {}};
+        best = AlignedPair{{a, b, *pose, trust(agreement)}, agreement, false, {}, {}};
     }
     return best;
   }

@@ -23,6 +23,7 @@ struct AlignedPair {
   ViewAgreement agreement;  ///< under this pose
   bool predicted = false;   ///< found from the pose of the alignment, not from matches
   PairJudgement judgement;
+  std::optional<double> confidence;  ///< probability that a pose found from matches registers the pair (confidence.h)
 };
 
 struct AlignedViews {
@@ -40,9 +41,8 @@ double align_steps(int views);  ///< approximate sum of all shares
 
 /// Aligns views of one object without any knowledge of where they were taken.
 ///
-/// Every pair is matched as in the paper; the poses of several groupers are refined and start the dense refinement of the
-/// whole surfaces. A pose that a view contradicts (it puts points in front of what the view saw) is dropped; of the others
-/// the one with the largest overlap is kept, if it reaches `least_overlap`. A pose graph (align_views) judges these pairs,
+/// Every pair is matched as in the paper and registered as by register_pair; the pose is kept if it is more
+/// probable than not, its overlap reaches `least_overlap` and no view contradicts it (it puts points in front of what the view saw). A pose graph (align_views) judges these pairs,
 /// each weighted by its overlap. Then pairs that do not agree, or had no pose, are aligned from the poses of the graph, and
 /// the graph is solved again with the added pairs, until none is added.
 ///

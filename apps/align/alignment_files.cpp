@@ -89,7 +89,7 @@ std::vector<FileContent> alignment_files(const std::string& folder, const std::v
   for (std::size_t view = 0; view < names.size(); ++view)
     files.push_back({folder + "/" + names[view] + ".xf", transform_text(aligned.world_from_view[view])});
   CsvTable table{{"source", "target", "transform", "overlap", "median_pr", "in_front", "error_pr", "loops",
-                  "closed_loops", "verdict", "origin"},
+                  "closed_loops", "verdict", "origin", "confidence"},
                  {}};
   for (std::size_t i = 0; i < aligned.pairs.size(); ++i) {
     const AlignedPair& pair = aligned.pairs[i];
@@ -98,21 +98,22 @@ std::vector<FileContent> alignment_files(const std::string& folder, const std::v
         {name_of(names, pair.pose.a), name_of(names, pair.pose.b), pose_file("", i + 1),
          to_text(pair.agreement.overlap), pair.agreement.median_pr ? to_text(*pair.agreement.median_pr) : "",
          to_text(pair.agreement.in_front), to_text(pair.judgement.error_pr), std::to_string(pair.judgement.loops),
-         std::to_string(pair.judgement.closed_loops), to_text(pair.judgement.verdict), origin(pair)});
+         std::to_string(pair.judgement.closed_loops), to_text(pair.judgement.verdict), origin(pair),
+         pair.confidence ? to_text(*pair.confidence) : ""});
   }
   files.push_back({folder + "/pairs.csv", csv_text(table)});
   return files;
 }
 
 std::string alignment_text(const std::vector<std::string>& names, const AlignedViews& aligned) {
-  TextTable table({"source", "target", "overlap %", "median pr", "in front %", "off pr", "loops", "closed", "verdict"});
+  TextTable table({"source", "target", "overlap %", "median pr", "in front %", "off pr", "loops", "closed", "confidence", "verdict"});
   std::string doubtful;
   for (const AlignedPair& pair : aligned.pairs) {
     const std::string &source = name_of(names, pair.pose.a), &target = name_of(names, pair.pose.b),
                       verdict = to_text(pair.judgement.verdict);
     table.add({source, target, fixed(100 * pair.agreement.overlap, 1), fixed(pair.agreement.median_pr, 2),
                fixed(100 * pair.agreement.in_front, 2), fixed(pair.judgement.error_pr, 2),
-               std::to_string(pair.judgement.loops), std::to_string(pair.judgement.closed_loops), verdict});
+               std::to_string(pair.judgement.loops), std::to_string(pair.judgement.closed_loops), fixed(pair.confidence, 3), verdict});
     if (is_doubtful(pair)) doubtful += "doubtful: " + source + " -> " + target + ", " + verdict + "\n";
   }
   std::string text = aligned.pairs.empty() ? "no pair of views agrees\n" : table.str();
@@ -143,6 +144,7 @@ Json to_json(const std::vector<std::string>& names, const AlignedViews& aligned)
                      {"loops", pair.judgement.loops},
                      {"closed_loops", pair.judgement.closed_loops},
                      {"origin", origin(pair)},
+                     {"confidence", json_or_null(pair.confidence)},
                      {"target_from_source", to_json(pair.pose.b_from_a)}});
   return {{"converged", aligned.converged}, {"views", views}, {"pairs", pairs}};
 }

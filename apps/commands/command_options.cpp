@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/methods.h"
 #include "apps/pair/option_names.h"
 #include "apps/runtime/memory.h"
 #include "apps/runtime/output.h"
@@ -128,7 +129,7 @@ OptionsByName surface_part(const OptionsByName& options) {
 ConfiguredGrouper configure_grouper(const std::string& name, const OptionsByName& options) {
   return as_usage([&] {
     const auto found = options.find(name);
-    return find_grouper(name).configure(found == options.end() ? OptionOverrides() : found->second);
+    return find_method(name).configure(found == options.end() ? OptionOverrides() : found->second);
   });
 }
 
@@ -252,9 +253,24 @@ void add_external_options(CLI::App& command, ExternalSettings& settings) {
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
   command
+      .add_option("--plugin", settings.plugins,
+                  "A shared library as a further grouper, which has a name of its own (grouping/plugin.h)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command
       .add_option("--external-timeout", settings.timeout_s,
                   "Longest call of such a program in seconds: then it is killed, with all that it started")
       ->capture_default_str();
+}
+
+void load_plugins(const ExternalSettings& settings) {
+  for (const std::string& file : settings.plugins) load_plugin(file);
+}
+
+std::vector<std::string> with_plugins(std::vector<std::string> names) {
+  for (const std::string& method : plugin_methods())
+    if (std::find(names.begin(), names.end(), method) == names.end()) names.push_back(method);
+  return names;
 }
 
 std::vector<ExternalMethod> external_methods(const ExternalSettings& settings) {
@@ -275,6 +291,7 @@ std::vector<ExternalMethod> external_methods(const ExternalSettings& settings) {
 
 std::vector<std::string> words_of(const ExternalSettings& settings) {
   std::vector<std::string> words;
+  for (const std::string& file : settings.plugins) words.insert(words.end(), {"--plugin", file});
   for (const std::string& method : settings.methods) words.insert(words.end(), {"--external", method});
   if (settings.timeout_s != ExternalSettings().timeout_s)
     words.insert(words.end(), {"--external-timeout", to_text(settings.timeout_s)});

@@ -68,12 +68,18 @@ struct SensorSettings {
 void add_sensor_options(CLI::App& command, SensorSettings& settings);
 ViewOptions view_options(const SensorSettings& settings);
 
-/// --external and --external-timeout, as typed.
+/// --plugin, --external and --external-timeout, as typed.
 struct ExternalSettings {
-  std::vector<std::string> methods;
+  std::vector<std::string> plugins, methods;
   double timeout_s = 60;
+
+  bool empty() const { return plugins.empty() && methods.empty(); }
 };
 void add_external_options(CLI::App& command, ExternalSettings& settings);
+/// Adds those of plug-ins to methods(). Throws as load_plugin.
+void load_plugins(const ExternalSettings& settings);
+/// These names, then those of plug-ins that are not among them.
+std::vector<std::string> with_plugins(std::vector<std::string> names);
 /// Each of them once, with half of the machine's memory.
 std::vector<ExternalMethod> external_methods(const ExternalSettings& settings);
 /// The words that give these options again.

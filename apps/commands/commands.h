@@ -33,10 +33,12 @@ void add_perturb(CLI::App& app, Action& action);
 void add_transform(CLI::App& app, Action& action);
 void add_triangulate(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_advise(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 void add_submit(CLI::App& app, Action& action);
+void add_scoreboard(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);
@@ -46,5 +48,6 @@ void add_compare(CLI::App& app, Action& action);
 void add_draw(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_align(CLI::App& app, Action& action);
+void add_manual(CLI::App& app, Action& action);
 
 }  // namespace corral

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "apps/runtime/embedded_files.h"
+#include "apps/runtime/text_table.h"
 #include "io/text/toml_file.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
@@ -185,6 +186,26 @@ ConfidenceModel read_model(const TomlTable& root, const std::string& name) {
 
 double ConfidenceModel::probability(const ConfidenceSignals& signals) const {
   return logistic(slope * logit(*this, signals) + shift);
+}
+
+std::size_t ConfidenceModel::outside(const ConfidenceSignals& signals) const {
+  std::size_t k = 0;
+  while (k < kSignals && signals[k] >= low[k] && signals[k] <= high[k]) ++k;
+  return k;
+}
+
+const char* verdict(double probability) {
+  return probability >= kTrusted ? "trust it" : probability >= kDoubted ? "look at it" : "do not use it";
+}
+
+std::string confidence_sentence(const ConfidenceModel& model, const ConfidenceSignals& signals) {
+  const double probability = model.probability(signals);
+  const std::size_t beyond = model.outside(signals);
+  return std::string(verdict(probability)) + ": probability " + fixed(probability, 3) +
+         " that it registers the pair, as on the " + std::to_string(model.pairs) +
+         " pairs that this was learned from; most for it: " + kSignalNames[model.strongest(signals)] +
+         ", least: " + kSignalNames[model.weakest(signals)] +
+         (beyond < kSignals ? std::string("; outside of what those pairs had: ") + kSignalNames[beyond] : "");
 }
 
 std::size_t ConfidenceModel::weakest(const ConfidenceSignals& signals) const {

@@ -19,10 +19,19 @@ struct ConfidenceModel {
 
   double probability(const ConfidenceSignals& signals) const;
 
+  /// The first signal beyond those of the poses that the model was fitted to; kSignals if there is none.
+  std::size_t outside(const ConfidenceSignals& signals) const;
+
   /// The signals that weigh most against the pose and for it: those whose b_k z_k is the least and the largest.
   std::size_t weakest(const ConfidenceSignals& signals) const;
   std::size_t strongest(const ConfidenceSignals& signals) const;
 };
+
+/// A pose of this probability is one to trust; one below kDoubted is not to be used.
+constexpr double kTrusted = 0.9, kDoubted = 0.5;
+
+/// What to do with a pose of this probability: "trust it", "look at it" or "do not use it".
+const char* verdict(double probability);
 
 /// One for pairs of surfaces, one for tables of matches alone.
 struct ConfidenceModels {
@@ -54,6 +63,10 @@ struct Reliability {
   int kept = 0, kept_right = 0;    ///< poses with p >= 0.9
 };
 Reliability reliability(const std::vector<double>& probabilities, const std::vector<JudgedPose>& poses);
+
+/// The verdict and the probability with what weighs most for and against it, and what is beyond the poses that the model was
+/// fitted to, in words.
+std::string confidence_sentence(const ConfidenceModel& model, const ConfidenceSignals& signals);
 
 /// confidence.toml, and back. Throws IoError naming file and key.
 std::string confidence_text(const ConfidenceModels& models);

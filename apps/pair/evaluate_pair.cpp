@@ -193,6 +193,7 @@ MethodRecord evaluate_method(const std::string& name, const ConfiguredGrouper& g
     TimedGrouping timed = time_grouping(grouper.group, matches, repeat);
     record.found = std::move(timed.found);
     record.time_ms = timed.time_ms;
+    record.confidence = record.found.confidence;
     judge(record, matches, truth);
   } catch (const MissingColumn& error) {
     record.failure = error.what();

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "apps/pair/foreign_answer.h"
+#include "apps/pair/methods.h"
 #include "apps/runtime/child_program.h"
 #include "io/disk/file.h"
 #include "io/matches/matches_file.h"
@@ -119,7 +120,7 @@ bool is_method_name(const std::string& name) {
     return !is_letter && !(letter >= '0' && letter <= '9') && std::string("._+-").find(static_cast<char>(letter)) == std::string::npos;
   };
   return !name.empty() && name[0] != '.' && std::none_of(name.begin(), name.end(), is_odd) &&
-         !look_up(groupers(), name) && name != "oracle" && name != "baseline";
+         !look_up(methods(), name) && name != "oracle" && name != "baseline";
 }
 
 ExternalMethod parse_external(const std::string& text) {

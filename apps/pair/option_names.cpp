@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/option_names.h"
 
-#include "grouping/registry.h"
+#include "apps/pair/methods.h"
 #include "kernel/surface/registry.h"
 
 namespace corral {
 
 std::vector<std::string> option_names() {
   std::vector<std::string> names;
-  for (const Grouper& entry : groupers()) names.push_back(entry.name);
+  for (const Grouper& entry : methods()) names.push_back(entry.name);
   for (const Detector& entry : detectors()) names.push_back(entry.name);
   for (const Descriptor& entry : descriptors()) names.push_back(entry.name);
   return names;
 }
 
 const std::vector<OptionValue>* default_options(const std::string& name) {
-  if (const Grouper* entry = look_up(groupers(), name)) return &entry->options;
+  if (const Grouper* entry = look_up(methods(), name)) return &entry->options;
   if (const Detector* entry = look_up(detectors(), name)) return &entry->options;
   if (const Descriptor* entry = look_up(descriptors(), name)) return &entry->options;
   return nullptr;

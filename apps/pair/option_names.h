@@ -9,7 +9,7 @@
 
 namespace corral {
 
-/// The names of all groupers, detectors and descriptors, in that order: what NAME of NAME.OPTION may be.
+/// The names of all methods, detectors and descriptors, in that order: what NAME of NAME.OPTION may be.
 std::vector<std::string> option_names();
 
 /// The default options of one of them; null for another name.

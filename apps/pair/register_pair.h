@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/pair/confidence_signals.h"
+#include "grouping/grouper.h"
 #include "kernel/correspondence_set.h"
+#include "kernel/options.h"
 #include "kernel/parallel.h"
 #include "kernel/rigid_transform.h"
 #include "kernel/surface/mesh/mesh.h"
@@ -21,30 +23,36 @@ struct ProposedPose {
   RigidTransform target_from_source;
   int support = 0;                 ///< matches within 5 pr
   double score = 0;                ///< SurfaceCoverage within 4 pr; of a table, the mean of 1 - (e/5 pr)^2 over all matches, 0 beyond
-  double overlap = 0, rms_pr = 0;  ///< of the dense refinement (SurfaceFit); 0 for a table
-  double moved_pr = 0;             ///< mean displacement of the matched source points by the dense refinement
-  double in_front = 0;             ///< share of points in front of what the other sensor saw, where sensors are known
+  SurfaceEvidence surfaces;
 };
-
-/// What tells a right pose from a wrong one without a truth; all finite, larger is safer.
-constexpr std::size_t kSignals = 9;
-constexpr std::array<const char*, kSignals> kSignalNames = {
-    "support", "support share", "lead over other poses", "certainty of the fit", "agreement of groupers",
-    "overlap", "residual",      "free space",            "stability"};
-using ConfidenceSignals = std::array<double, kSignals>;
 
 /// The poses of a pair without a truth.
 struct Registration {
   std::vector<ProposedPose> poses;             ///< the best first, farther than 5 pr apart; empty if there is none
   std::optional<ConfidenceSignals> signals;    ///< of the best
   std::vector<std::string> methods;            ///< the groupers that answered
+  OtherPoses others;                           ///< for the signals of any pose of the pair
 };
 
 /// The surfaces beside a table of matches.
 struct RegisteredSurfaces {
   const Mesh &source, &target;
-  std::optional<ViewOptions> sensor;  ///< of both, if they are views of which it is known
+  std::optional<ViewOptions> source_sensor, target_sensor;  ///< of those that are views of which it is known
 };
+
+/// A grouper that proposes poses, with options that serve that.
+struct Proposer {
+  std::string method;
+  OptionOverrides options;
+};
+
+/// Each finds pairs that the others miss; the cheap ones first.
+const std::vector<Proposer>& proposers();
+double proposers_memory(int matches);  ///< peak bytes of any of them
+
+/// What it finds; nothing if it needs a column that the table lacks, or more than 4 GB. Its own pose, if it has none, is the fit
+/// to its selection.
+std::optional<GroupingResult> propose(const Proposer& proposer, const CorrespondenceSet& matches);
 
 /// Called when a step of registration_steps() begins, with its name.
 using RegistrationObserver = std::function<void(const std::string& step)>;
@@ -55,11 +63,7 @@ int registration_steps();
 /// contradicts (more than 1.5 % of the points in front of what it saw) are dropped, unless all are; the best is that under which
 /// the surfaces cover each other best. Of a table alone, the score over all matches decides.
 ///
-/// Signals   (S: the n' matches within 5 pr of the best pose T, m = the fewer distinct points of the two sides, n all matches)
-///           ln(1 + m); ln((m+1)/(n-m+1)); ln((m+1)/(m2+1)) with m2 the most matches outside S within 5 pr of one other pose, more
-///           than 10 pr from T; -ln(0.01 + u) with u the root mean square displacement of the matched points predicted by
-///           s^2 (sum J^T J)^-1, s^2 = sum e^2 / max(1, 3m-6), 100 if singular or m < 4, pr; the share of the groupers whose own pose is
-///           within 10 pr of T; overlap; -rms/4 pr; -in_front; -ln(1 + moved_pr).
+/// Signals   of the best pose (confidence_signals.h).
 /// Source    the choice is that of [chen2023sc2pcr]; the signals are ours.
 /// Returns   no pose if no grouper has one. Deterministic for any number of threads.
 Registration register_pair(const CorrespondenceSet& matches, const std::optional<RegisteredSurfaces>& surfaces,

@@ -21,6 +21,7 @@ const std::vector<TableColumn> kMethodColumns = {{"grouper", "method"},
                                                  {"mean err pr", "mean_error_pr", 3},
                                                  {"RMSE pr", "rmse_pr", 3},
                                                  {"ADD", "add_share", 4},
+                                                 {"confidence", "confidence", 3},
                                                  {"outcome", "outcome"},
                                                  {"status", "status"}};
 
@@ -60,6 +61,7 @@ Json method_row(const MethodRecord& record) {
               {"time_ms", has_answer ? json_or_null(record.time_ms) : Json(nullptr)}};
   add_errors(row, "", record.errors, is_judged);
   add_errors(row, "initial_", record.initial_errors, is_judged);
+  row["confidence"] = json_or_null(record.confidence);
   row["outcome"] = is_judged ? Json(record.outcome()) : Json(nullptr);
   row["status"] = to_text(record.status());
   return row;

@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/surface_choice.h"
 
-#include "grouping/pose/pose_score.h"
+#include "apps/pair/confidence_signals.h"
 #include "kernel/surface/normals.h"
 #include "refine/refine_rigid.h"
 
 namespace corral {
 namespace {
 
-constexpr double kReachPr = 4, kTolerancePr = 5;
+constexpr double kReachPr = 4;
 constexpr std::size_t kFewestRows = 3;
 
 SurfaceCoverage coverage_of(const Mesh& source, const Mesh& target, const ParallelFor& parallel) {
   const Points source_normals = estimate_normals(source, {}, parallel),
                target_normals = estimate_normals(target, {}, parallel);
   return {{source.vertices, source_normals}, {target.vertices, target_normals}};
-}
-
-Indices agreeing_with(const CorrespondenceSet& matches, const RigidTransform& pose) {
-  std::vector<double> residuals;
-  measure_residuals(matches, pose, residuals);
-  return rows_within(residuals, kTolerancePr * matches.resolution);
 }
 
 }  // namespace
@@ -40,12 +34,12 @@ GroupingResult SurfaceChoice::operator()(const CorrespondenceSet& matches, const
     if (score > best.score) best = {pose, score}, is_own = is_of_selection;
   };
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    consider(refine_rigid(matches, agreeing_with(matches, starts[i]), {}, starts[i]), starts[i], i == 0);
+    consider(refine_rigid(matches, agreeing_rows(matches, starts[i]), {}, starts[i]), starts[i], i == 0);
     consider(refine_over_all(matches, starts[i]), starts[i], false);
   }
   GroupingResult chosen = found;
   if (is_own) return chosen;
-  chosen.selected = agreeing_with(matches, best.target_from_source);
+  chosen.selected = agreeing_rows(matches, best.target_from_source);
   if (chosen.selected.size() < kFewestRows) return found;
   chosen.target_from_source = best.target_from_source;
   return chosen;

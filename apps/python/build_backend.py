@@ -137,7 +137,7 @@ def build_sdist(sdist_directory, config_settings=None):
             archive.addfile(entry, io.BytesIO(content))
         add("pyproject.toml", settings.encode())
         add("PKG-INFO", metadata(part))
-        for file in ["CMakeLists.txt", "LICENSE"]:
+        for file in ["CMakeLists.txt", "LICENSE", "apps/embed.cmake", "paper/confidence.toml"]:
             add(file, (ROOT / file).read_bytes())
         for room in ROOMS:
             for path in sorted((ROOT / room).rglob("*")):

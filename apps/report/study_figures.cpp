@@ -6,6 +6,7 @@
 #include <set>
 
 #include "apps/pair/evaluate_pair.h"
+#include "apps/report/reliability_figures.h"
 #include "kernel/error.h"
 #include "kernel/evaluation.h"
 #include "kernel/number_text.h"
@@ -164,6 +165,24 @@ void add_budgets(const ExperimentInfo& info, const std::map<std::string, std::ve
   if (!panel.series.empty()) figures.panels.push_back({panel.name, title_of(info), {panel}});
 }
 
+/// What the probabilities of poses are worth, where they were asked for.
+void add_reliability(const ExperimentInfo& info, const std::map<std::string, std::vector<const StudyRecord*>>& records,
+                     StudyFigures& figures) {
+  std::vector<RatedPoses> rated;
+  for (const std::string& method : info.methods) {
+    const auto found = records.find(method);
+    if (found != records.end()) rated.push_back(rated_poses(method, found->second));
+  }
+  PanelFigure figure{file_name(info, "reliability"), title_of(info), {}};
+  Panel curve = empty_panel(info, "reliability-curve"), coverage = empty_panel(info, "reliability-coverage");
+  curve.note = coverage.note = "Refined poses over the pairs of all levels; right: mean error of at most 5 pr.";
+  draw_reliability(rated, curve);
+  draw_coverage(rated, coverage);
+  if (curve.series.empty()) return;
+  figure.panels = {curve, coverage};
+  figures.panels.push_back(figure);
+}
+
 void add_distributions(const StudyFolder& run, const ExperimentInfo& info, StudyFigures& figures) {
   const auto records = counted_records(run, info);
   Panel curve = empty_panel(info, "success-curve");
@@ -186,6 +205,7 @@ void add_distributions(const StudyFolder& run, const ExperimentInfo& info, Study
     curve.series.push_back(series);
   }
   add_budgets(info, records, figures);
+  add_reliability(info, records, figures);
   const auto has_pose = [](const Box& box) { return box.without < box.pairs; };
   if (std::none_of(boxes.boxes.begin(), boxes.boxes.end(), has_pose)) return;
   figures.panels.push_back({curve.name, title_of(info), {curve}});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "apps/pair/confidence.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/truth_fit.h"
 #include "kernel/error.h"
@@ -35,6 +36,20 @@ Number success(const R& record) {
   const PoseScores& scores = record.*Pose;
   if (!scores.rotation_error_deg && !scores.mean_error_pr) return std::nullopt;
   return scores.mean_error_pr && *scores.mean_error_pr <= kSuccessPr ? 1 : 0;
+}
+
+/// What a probability says of the refined pose: its squared error; whether it is one to trust; whether such a pose is right.
+Number brier(const R& record) {
+  const Number right = success<&R::refined>(record);
+  if (!record.confidence || !right) return std::nullopt;
+  return (*record.confidence - *right) * (*record.confidence - *right);
+}
+Number trusted(const R& record) {
+  if (!record.confidence) return std::nullopt;
+  return *record.confidence >= kTrusted ? 1 : 0;
+}
+Number trusted_right(const R& record) {
+  return trusted(record).value_or(0) > 0 ? success<&R::refined>(record) : std::nullopt;
 }
 
 /// Whether the refinement over all matches gains or loses the pair; absent where it was not asked for.
@@ -100,6 +115,10 @@ const std::vector<Measure> kOfSelections = {
 const std::vector<Measure> kOfCalls = {
     {"time_ms",             "time",            "ms", 2, kAny, Smaller, number(&R::time_ms), nullptr, LeftOut, None, kOnPage | kEveryPair},
     {"stated_time_ms",      "time, as stated", "ms", 2, kAny, Smaller, number(&R::stated_time_ms), nullptr, LeftOut, Median, kOnPage},
+    {"confidence",          "confidence",      "",   3, 1,    Larger,  number(&R::confidence), nullptr, LeftOut, Mean, kOnPage | kIfTried},
+    {"brier",               "Brier score",     "",   3, 1,    Smaller, {}, brier,   LeftOut, Mean, kIfTried},
+    {"trusted",             "trusted",         "",   3, 1,    Larger,  {}, trusted, LeftOut, Mean, kYesOrNo | kIfTried},
+    {"trusted_right",       "right of the trusted", "", 3, 1, Larger,  {}, trusted_right, LeftOut, Mean, kYesOrNo | kIfTried},
     {"success_area",        "success area",    "", 3, 1, Larger, {}, area, Zero, Mean},
     {"initial_success_5pr", "initial success", "", 3, 1, Larger, {}, success<&R::initial>, Zero, Mean,
      kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr, unrefined"},

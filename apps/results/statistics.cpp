@@ -149,6 +149,15 @@ McNemarTest mcnemar(int only_first, int only_second) {
   return test;
 }
 
+std::pair<double, double> wilson_interval(double successes, int trials) {
+  constexpr double kZ = 1.959963984540054;  // normal quantile of 97.5 %
+  if (trials <= 0) return {0, 1};
+  const double n = trials, share = successes / n, z2 = kZ * kZ;
+  const double middle = (share + z2 / (2 * n)) / (1 + z2 / n);
+  const double half = kZ / (1 + z2 / n) * std::sqrt(share * (1 - share) / n + z2 / (4 * n * n));
+  return {successes > 0 ? std::max(0.0, middle - half) : 0, successes < n ? std::min(1.0, middle + half) : 1};
+}
+
 double studentized_range_cdf(double range, int groups) {
   if (groups < 2) throw InvalidInput("studentized_range", "groups", groups, "at least 2");
   if (!(range > 0)) return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <utility>
 #include <vector>
 
 namespace corral {
@@ -24,6 +25,9 @@ struct McNemarTest {
   double chi_square = 0, chi_square_p = 1;  ///< with Edwards' continuity correction, one degree of freedom
 };
 McNemarTest mcnemar(int only_first, int only_second);
+
+/// Wilson's interval of 95 % for a share of successes; (0, 1) without trials. Successes may be expected ones.
+std::pair<double, double> wilson_interval(double successes, int trials);
 
 /// The range of `groups` independent standard normal variables: the studentized range with infinitely many degrees of
 /// freedom. Quantile to about 1e-13. Throw InvalidInput for fewer than 2 groups, or p outside (0, 1).

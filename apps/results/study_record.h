@@ -39,6 +39,7 @@ struct StudyRecord {
                                                  ///< over all matches and over the whole surfaces
   std::optional<double> time_ms;                 ///< of the grouping alone
   std::optional<double> stated_time_ms;          ///< of a method of another program, as that says
+  std::optional<double> confidence;              ///< probability that the refined pose registers the pair
   SharedText selection;                          ///< file of selections in the study folder; empty if there is none
 };
 

@@ -8,7 +8,7 @@ namespace corral {
 
 /// How this program was built and where it runs.
 struct BuildInfo {
-  std::string version;   ///< "0.1.0"
+  std::string version;   ///< "0.2.0"
   std::string commit;    ///< of the source tree, "-dirty" behind it if that was changed; "unknown" outside a repository
   std::string compiler;  ///< name and version
   std::string flags;

@@ -57,6 +57,7 @@ StudyRecord scored(StudyRecord record, const TaskResult& task, std::size_t thres
   record.dense = task.dense;
   record.time_ms = task.time_ms;
   record.stated_time_ms = task.stated_time_ms;
+  record.confidence = task.confidence;
   if (task.correct.empty() || !task.selected) return record;
   const int correct = task.correct[threshold];
   const int right = task.true_matches.empty() ? *record.true_matches : task.true_matches[threshold];

@@ -9,7 +9,9 @@
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/explain.h"
 #include "apps/pair/match_pair.h"
+#include "apps/pair/methods.h"
 #include "apps/pair/normal_sides.h"
+#include "apps/pair/portfolio.h"
 #include "apps/pair/read_surface.h"
 #include "apps/pair/surface_choice.h"
 #include "apps/pair/surface_warnings.h"
@@ -118,11 +120,16 @@ class PairStudy {
         records_.push_back(evaluate_external(*task.external, matches_, truth_, 1));
         continue;
       }
-      const ConfiguredGrouper grouper = find_grouper(task.method).configure(task.options);
+      if (task.method == kRegister && surfaces_) {
+        records_.push_back(evaluate_registration(matches_, {surfaces_->source, surfaces_->target, {}, {}}, truth_));
+        continue;
+      }
+      const ConfiguredGrouper grouper = find_method(task.method).configure(task.options);
       records_.push_back(evaluate_method(task.method, grouper, matches_, truth_, 1));
     }
     if (unit_.by_surface && surfaces_)
       choose_by_surfaces(records_, SurfaceChoice(surfaces_->source, surfaces_->target), matches_, truth_);
+    if (unit_.confidence) rate_poses(records_, matches_);
     UnitResult result;
     result.resolution = matches_.resolution;
     if (surfaces_) result.source_points = static_cast<int>(surfaces_->source.vertices.rows());
@@ -233,6 +240,7 @@ class PairStudy {
     result.status.cause = one_line(result.status.cause);
     result.time_ms = record.time_ms;
     result.stated_time_ms = record.stated_time_ms;
+    result.confidence = record.confidence;
     if (!record.failure.empty()) return result;
     result.selected = static_cast<int>(record.found.selected.size());
     for (const auto& labels : labels_) {

@@ -22,7 +22,7 @@ struct TaskResult {
   std::vector<int>
       true_matches;  ///< at each threshold, under the truth by which `correct` counts; empty: those of the unit
   PoseScores initial, refined, all_rows, dense;
-  std::optional<double> time_ms, stated_time_ms;
+  std::optional<double> time_ms, stated_time_ms, confidence;
 };
 
 /// The result of a unit.

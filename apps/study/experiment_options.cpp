@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "apps/pair/methods.h"
 #include "apps/pair/option_names.h"
 #include "apps/pair/surface_choice.h"
-#include "grouping/registry.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
 
@@ -75,7 +75,7 @@ void check_options(const Experiment& experiment) {
                          "those of its groupers, detectors and descriptors");
   for (const StudyLevel& level : experiment.info.levels) {
     for (const std::string& method : experiment.info.methods)
-      find_grouper(method).configure(options_at(experiment, method, level));
+      find_method(method).configure(options_at(experiment, method, level));
     const MatchSettings matching = matching_at(experiment, level);
     matching.validate();
     for (const double value : experiment.varied_values)

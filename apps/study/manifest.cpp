@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <unordered_set>
 
+#include "apps/pair/methods.h"
 #include "apps/runtime/build_info.h"
 #include "apps/runtime/json.h"
 #include "apps/runtime/workers.h"
-#include "grouping/registry.h"
 #include "io/disk/file.h"
 #include "io/pose/transform_file.h"
 #include "kernel/error.h"
@@ -26,7 +26,7 @@ Json to_json(const Experiment& experiment) {
   for (const AttributeFilter& filter : experiment.filters) filters[filter.attribute] = filter.values;
   for (const AttributeFilter& filter : experiment.exceptions) exceptions[filter.attribute] = filter.values;
   for (const auto& [name, overrides] : experiment.options)
-    if (!look_up(groupers(), name)) options[name] = overrides;
+    if (!look_up(methods(), name)) options[name] = overrides;
   for (const ForeignMethod& method : experiment.foreign)
     foreign.push_back({{"name", method.name},
                        {"title", method.title},
@@ -36,10 +36,10 @@ Json to_json(const Experiment& experiment) {
                        {"time_ms", json_or_null(method.time_ms)},
                        {"command", method.external ? Json(method.external->command) : Json(nullptr)}});
   for (const std::string& method : info.methods) {
-    if (!look_up(groupers(), method)) continue;
+    if (!look_up(methods(), method)) continue;
     const auto found = experiment.options.find(method);
     options[method] = corral::to_json(
-        find_grouper(method).configure(found == experiment.options.end() ? OptionOverrides() : found->second).options);
+        find_method(method).configure(found == experiment.options.end() ? OptionOverrides() : found->second).options);
     options[method].erase("seed");  // every call has its own, derived from that of the experiment
   }
   return {{"name", info.name},
@@ -64,6 +64,7 @@ Json to_json(const Experiment& experiment) {
           {"dense", experiment.dense},
           {"all_rows", experiment.all_rows},
           {"by_surface", experiment.by_surface},
+          {"confidence", experiment.confidence},
           {"tables", experiment.tables}};
 }
 

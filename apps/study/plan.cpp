@@ -9,7 +9,7 @@
 #include <queue>
 #include <unordered_map>
 
-#include "grouping/registry.h"
+#include "apps/pair/methods.h"
 #include "kernel/number_text.h"
 
 namespace corral {
@@ -63,7 +63,7 @@ class Estimator {
     std::pair<std::string, OptionOverrides> key{task.method, task.options};
     key.second.erase("seed");  // every call has its own
     const auto [place, is_new] = memory_.try_emplace(std::move(key));
-    if (is_new) place->second = find_grouper(task.method).configure(task.options).working_memory;
+    if (is_new) place->second = find_method(task.method).configure(task.options).working_memory;
     return place->second ? static_cast<std::uint64_t>(std::min(place->second(rows), static_cast<double>(kMost))) : 0;
   }
 

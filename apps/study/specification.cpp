@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/methods.h"
 #include "apps/pair/option_names.h"
 #include "apps/runtime/embedded_files.h"
 #include "apps/study/experiment_options.h"
@@ -54,7 +55,9 @@ int whole_number(const TomlTable& table, const std::string& key, int otherwise, 
 }
 
 void check_method(const TomlTable& table, const std::string& key, const std::string& method) {
-  if (!look_up(groupers(), method)) fail_unknown(table, key, method, expand_groupers({"all"}));
+  std::vector<std::string> known;
+  for (const Grouper& entry : methods()) known.push_back(entry.name);
+  if (!look_up(methods(), method)) fail_unknown(table, key, method, known);
 }
 
 /// A grouper, detector or descriptor.
@@ -250,7 +253,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   const TomlTable table = TomlTable::parse(path, text);
   table.only({"name",    "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
               "bins",    "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
-              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select",       "except"});
+              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select",       "except", "confidence"});
   Experiment experiment;
   ExperimentInfo& info = experiment.info;
   info.name = required_text(table, "name");
@@ -264,7 +267,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   experiment.sweep = sweep_of(table, info.attribute);
   info.levels = read_levels(table, experiment);
   info.methods = expand_groupers(table.texts("groupers"));
-  if (info.methods.empty()) info.methods = expand_groupers({"paper"});
+  if (!table.has("groupers")) info.methods = expand_groupers({"paper"});
   for (std::size_t i = 0; i < info.methods.size(); ++i) {
     check_method(table, "groupers", info.methods[i]);
     if (std::count(info.methods.begin(), info.methods.end(), info.methods[i]) > 1)
@@ -278,6 +281,7 @@ Experiment parse_experiment(const std::string& path, const std::string& text) {
   experiment.seed = static_cast<std::uint64_t>(whole_number(table, "seed", 1, 0));
   experiment.dense = table.flag("dense").value_or(false);
   experiment.all_rows = is_second(table, "rows", kRows);
+  experiment.confidence = table.flag("confidence").value_or(false);
   experiment.by_surface = is_second(table, "select", kSelect);
   experiment.filters = read_filters(table, "filter");
   experiment.exceptions = read_filters(table, "except");

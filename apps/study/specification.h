@@ -59,6 +59,7 @@ struct Experiment {
   std::uint64_t seed = 1;
   bool dense = false;                  ///< also refine on the whole surfaces
   bool all_rows = false;               ///< also refine over all matches
+  bool confidence = false;             ///< also the probability that each pose is right (rate_poses)
   bool by_surface = false;             ///< surfaces choose among the poses of a grouper (SurfaceChoice)
   int tables = 1;                      ///< of Sweep::TableSize: pairs whose tables are timed
   std::vector<ForeignMethod> foreign;  ///< behind the groupers in `info.methods`

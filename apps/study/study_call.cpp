@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "apps/study/study_call.h"
 
+#include <algorithm>
 #include <filesystem>
 
+#include "apps/pair/methods.h"
 #include "apps/study/experiment_options.h"
 #include "apps/study/methods_file.h"
+#include "kernel/error.h"
 
 namespace corral {
 
@@ -27,16 +30,22 @@ StudyCall study_call(const std::vector<std::string>& experiments, const std::str
 }
 
 WorkList work_list_of(const StudyCall& call) {
+  for (const std::string& file : call.plugins) load_plugin(file);
   std::vector<Experiment> experiments;
   for (const auto& [path, text] : call.experiments) {
     experiments.push_back(parse_experiment(path, text));
     Experiment& experiment = experiments.back();
+    std::vector<std::string>& names = experiment.info.methods;
+    for (const std::string& method : plugin_methods())
+      if (std::find(names.begin(), names.end(), method) == names.end()) names.push_back(method);
     experiment.dense = experiment.dense || call.dense;
     experiment.all_rows = experiment.all_rows || call.all_rows;
     experiment.by_surface = experiment.by_surface || call.by_surface;
+    experiment.confidence = experiment.confidence || call.confidence;
     override_options(experiment, call.options);
     if (call.methods) add_methods(experiment, parse_methods(call.methods->path, call.methods->text));
     add_methods(experiment, foreign_methods(call.externals));
+    if (experiment.info.methods.empty()) throw IoError(path, "groupers", "is empty, expected one grouper at least");
   }
   return make_work_list(std::move(experiments), call.data);
 }
@@ -45,7 +54,8 @@ Json to_json(const StudyCall& call) {
   const auto absolute = [](const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
   };
-  Json experiments = Json::array(), externals = Json::array(), methods = nullptr;
+  Json experiments = Json::array(), externals = Json::array(), plugins = Json::array(), methods = nullptr;
+  for (const std::string& file : call.plugins) plugins.push_back(absolute(file));
   for (const ExternalMethod& external : call.externals)
     externals.push_back({{"name", external.name},
                          {"command", external.command},
@@ -55,7 +65,7 @@ Json to_json(const StudyCall& call) {
   for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
   return {{"experiments", experiments},   {"methods", methods},  {"data", absolute(call.data)},
           {"options", call.options},      {"dense", call.dense}, {"all_rows", call.all_rows},
-          {"by_surface", call.by_surface}, {"externals", externals}};
+          {"by_surface", call.by_surface}, {"confidence", call.confidence}, {"externals", externals},  {"plugins", plugins}};
 }
 
 StudyCall study_call_of(const Json& json) {
@@ -67,9 +77,11 @@ StudyCall study_call_of(const Json& json) {
   call.options = json.at("options").get<OptionsByName>();
   for (const Json& each : json.at("externals"))
     call.externals.push_back({each.at("name"), each.at("command"), each.at("timeout_s"), each.at("memory_bytes")});
+  call.plugins = json.at("plugins").get<std::vector<std::string>>();
   call.dense = json.at("dense");
   call.all_rows = json.at("all_rows");
   call.by_surface = json.at("by_surface");
+  call.confidence = json.at("confidence");
   return call;
 }
 

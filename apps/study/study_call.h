@@ -19,8 +19,9 @@ struct StudyCall {
   std::optional<NamedText> methods;                          ///< methods of other programs, for every experiment
   std::string data;                                          ///< a data set, or a folder of data sets
   OptionsByName options;                                     ///< of --set
+  std::vector<std::string> plugins;                          ///< of --plugin
   std::vector<ExternalMethod> externals;                     ///< of --external
-  bool dense = false, all_rows = false, by_surface = false;  ///< as of Experiment, for all of them
+  bool dense = false, all_rows = false, by_surface = false, confidence = false;  ///< as of Experiment, for all of them
 };
 
 /// Reads the experiments (files, or names of built-in ones). Throws IoError.

@@ -6,12 +6,12 @@
 #include <map>
 #include <numeric>
 
+#include "apps/pair/methods.h"
 #include "apps/pair/read_surface.h"
 #include "apps/results/study_results.h"
 #include "apps/runtime/stopwatch.h"
 #include "apps/study/assemble.h"
 #include "apps/study/manifest.h"
-#include "grouping/registry.h"
 #include "io/matches/matches_file.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
@@ -58,7 +58,7 @@ class Timer {
     for (const GroupingTask& task : unit.tasks) {
       if (task.repeat > 0) continue;  // the same call is repeated here
       methods_.push_back(task.method);
-      calls_.push_back(find_grouper(task.method).configure(task.options).group);
+      calls_.push_back(find_method(task.method).configure(task.options).group);
       Stopwatch watch;
       selected_.push_back(static_cast<int>(calls_.back()(matches_).selected.size()));  // this also warms up
       batch_.push_back(watch.lap_ms() < kShortCall_ms ? kCallsOfShort : 1);

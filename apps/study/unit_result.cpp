@@ -49,7 +49,8 @@ Json to_json(const TaskResult& task) {
           {"all_rows", to_json(task.all_rows)},
           {"dense", to_json(task.dense)},
           {"time_ms", json_or_null(task.time_ms)},
-          {"stated_time_ms", json_or_null(task.stated_time_ms)}};
+          {"stated_time_ms", json_or_null(task.stated_time_ms)},
+          {"confidence", json_or_null(task.confidence)}};
 }
 
 TaskResult task_of(const Json& json) {
@@ -67,6 +68,7 @@ TaskResult task_of(const Json& json) {
   task.dense = pose_scores_of(json.at("dense"));
   task.time_ms = number_of(json.at("time_ms"));
   task.stated_time_ms = number_of(json.at("stated_time_ms"));
+  task.confidence = number_of(json.at("confidence"));
   return task;
 }
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <tuple>
 
+#include "apps/pair/methods.h"
 #include "apps/study/content_store.h"
 #include "apps/study/experiment_options.h"
 #include "apps/study/methods_file.h"
-#include "grouping/registry.h"
 #include "io/text/line_reader.h"
 #include "io/text/toml_file.h"
 #include "kernel/error.h"
@@ -65,14 +65,14 @@ bool is_used(const Experiment& experiment, const Dataset& dataset, const Dataset
 }
 
 bool draws(const std::string& method) {
-  const auto& options = find_grouper(method).options;
+  const auto& options = find_method(method).options;
   return std::any_of(options.begin(), options.end(), [](const OptionValue& option) { return option.name == "seed"; });
 }
 
 /// The folder of the selections of one setting of matching and grouping: the paper's has a short name.
 std::string setting_label(const Experiment& experiment, const WorkUnit& unit, const StudyLevel& level) {
   std::string text;
-  for (const Grouper& grouper : groupers())
+  for (const Grouper& grouper : methods())
     for (const auto& [name, value] : options_at(experiment, grouper.name, level))
       text += grouper.name + "." + name + "=" + value + "\n";
   if (experiment.by_surface) text += "by surface\n";
@@ -207,6 +207,7 @@ class Collector {
     WorkUnit& unit = list_.units[static_cast<std::size_t>(sample.unit)];
     unit.dense = unit.dense || experiment.dense;
     unit.all_rows = unit.all_rows || experiment.all_rows;
+    unit.confidence = unit.confidence || experiment.confidence;
     unit.by_surface = experiment.by_surface;
     const auto at = std::lower_bound(unit.thresholds_pr.begin(), unit.thresholds_pr.end(), sample.threshold_pr);
     if (at == unit.thresholds_pr.end() || *at != sample.threshold_pr)
@@ -215,7 +216,7 @@ class Collector {
     sample.selection =
         "selections/" + unit.dataset + "/" + setting_label(experiment, unit, level) + "/" + unit.pair.name + ".csv";
     for (const std::string& method : experiment.info.methods)
-      if (look_up(groupers(), method))
+      if (look_up(methods(), method))
         for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name))
           add_task(task, unit, sample);
     for (const ForeignMethod& method : experiment.foreign) add_task(task_of(method, dataset, unit.pair), unit, sample);
@@ -277,6 +278,7 @@ int level_of(const std::vector<StudyLevel>& levels, double value) {
 }
 
 std::vector<std::string> GroupingTask::foreign_files() const {
+  if (const std::string plugin = plugin_file(method); !plugin.empty()) return {plugin};
   return answer ? answer->files() : external ? external->files() : std::vector<std::string>();
 }
 
@@ -302,6 +304,7 @@ std::string unit_text(const WorkUnit& unit) {
                        {"dense", unit.dense},
                        {"all_rows", unit.all_rows},
                        {"by_surface", unit.by_surface},
+                       {"confidence", unit.confidence},
                        {"selections", selections}});
 }
 

@@ -22,7 +22,7 @@ struct GroupingTask {
   std::shared_ptr<const ForeignAnswer> answer = {};      ///< of another program, in files; null for a grouper
   std::shared_ptr<const ExternalMethod> external = {};  ///< another program, to be called; null for a grouper
 
-  /// The answers of another program, or the program itself; none of a grouper.
+  /// The answers of another program, the program itself, or the library of a plug-in; none of a grouper.
   std::vector<std::string> foreign_files() const;
 
   bool operator==(const GroupingTask& other) const {
@@ -42,7 +42,7 @@ struct WorkUnit {
   bool is_in_metres = false;                           ///< the data set says so
   bool shares_source = false, shares_target = false;   ///< another unit describes that mesh in the same way
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
-  bool all_rows = false, by_surface = false;           ///< as of Experiment
+  bool all_rows = false, by_surface = false, confidence = false;  ///< as of Experiment
   std::string scene = {};                              ///< scene_of the pair
 
   /// Those of the pair, then those of the answers of other programs and of the programs themselves.

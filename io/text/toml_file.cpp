@@ -143,6 +143,8 @@ std::vector<std::string> TomlTable::keys() const {
   return keys;
 }
 
+bool TomlTable::has(const std::string& key) const { return state_->table->contains(key); }
+
 void TomlTable::only(const std::vector<std::string>& known) const {
   for (const auto& [key, node] : *state_->table) {
     const std::string name(key.str());

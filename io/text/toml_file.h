@@ -31,6 +31,7 @@ class TomlTable {
   std::optional<std::string> scalar_text(const std::string& key) const;
 
   std::vector<std::string> keys() const;  ///< sorted by name
+  bool has(const std::string& key) const;
 
   /// Throws IoError if the table has an unknown key, and suggests the known key most like it.
   void only(const std::vector<std::string>& known) const;

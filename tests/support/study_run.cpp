@@ -114,7 +114,7 @@ void put_run(const std::string& folder, const ExperimentInfo& experiment, const 
   }
   std::string table = csv_line(record_columns());
   for (const StudyRecord& record : records) table += record_line(record);
-  const Json manifest = {{"version", "0.1.0"},
+  const Json manifest = {{"version", "0.2.0"},
                          {"command", "corral evaluate " + experiment.name + " --data data -o run"},
                          {"machine", {{"processor", "test"}, {"cores", 2}}},
                          {"experiments",

@@ -29,11 +29,12 @@ struct Method {
 };
 
 std::vector<Method> methods_of(const Settings& settings) {
-  if (settings.methods.empty() && settings.external.methods.empty())
-    throw UsageError("expected names of groupers, or --external");
+  if (settings.methods.empty() && settings.external.empty())
+    throw UsageError("expected names of groupers, --external or --plugin");
+  load_plugins(settings.external);
   std::vector<Method> methods;
   const std::vector<std::string> names =
-      settings.methods.empty() ? std::vector<std::string>() : method_names(settings.methods);
+      with_plugins(settings.methods.empty() ? std::vector<std::string>() : method_names(settings.methods));
   const OptionsByName options = parse_set(settings.set);
   require_in_use(options, names);
   for (const std::string& name : names) methods.push_back({name, configure_grouper(name, options).group});

@@ -5,6 +5,7 @@
 #include "apps/commands/pair/pair_run.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/external_method.h"
+#include "apps/pair/methods.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
@@ -138,9 +139,11 @@ int put_all(const std::vector<Grouped>& all, int matches, const Settings& settin
 }
 
 int group(const Settings& settings) {
-  if (settings.method.empty() && settings.external.methods.empty()) throw UsageError("expected --method or --external");
+  if (settings.method.empty() && settings.external.empty())
+    throw UsageError("expected --method, --external or --plugin");
+  load_plugins(settings.external);
   const std::vector<std::string> methods =
-      settings.method.empty() ? std::vector<std::string>() : method_names(settings.method);
+      with_plugins(settings.method.empty() ? std::vector<std::string>() : method_names(settings.method));
   const std::vector<ExternalMethod> externals = external_methods(settings.external);
   const OptionsByName options = parse_set(settings.set);
   require_in_use(options, methods);
@@ -166,7 +169,7 @@ void add_group(CLI::App& app, Action& action) {
   auto settings = std::make_shared<Settings>();
   command->add_option("matches", settings->matches, "Table of matches")->type_name("FILE")->required();
   command->add_option("-m,--method", settings->method,
-                      "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","));
+                      "all, paper (those of 2017), or names between commas: " + names_of(methods(), ","));
   add_external_options(*command, settings->external);
   add_set_option(*command, settings->set);
   command

@@ -8,6 +8,7 @@
 #include "apps/commands/pair/run_report.h"
 #include "apps/pair/dense_refinement.h"
 #include "apps/pair/normal_sides.h"
+#include "apps/pair/portfolio.h"
 #include "apps/pair/surface_choice.h"
 #include "apps/pair/surface_warnings.h"
 #include "apps/pair/table_truth_fit.h"
@@ -104,7 +105,7 @@ std::string call_text(const std::string& method, int matches, int repeat) {
 
 PairRun evaluate(const RunSettings& settings) {
   PairRun run;
-  run.methods = method_names(settings.methods);
+  run.methods = with_plugins(method_names(settings.methods));
   const OptionsByName options = parse_set(settings.set);
   for (const std::string& name : run.methods)
     run.groupers.push_back(
@@ -124,7 +125,7 @@ PairRun evaluate(const RunSettings& settings) {
     check_writable(settings.output + "/run.json");
   }
   Progress progress(match_stages(settings.match) + 1 + static_cast<double>(run.methods.size()) + settings.dense +
-                    (settings.select == kSelect[1]));
+                    (settings.select == kSelect[1]) + 1);
   if (settings.matches.empty())
     run.pair = match_pair(surfaces->source, surfaces->target, settings.match,
                           {[&](const std::string& stage) { progress.begin(stage); }});
@@ -135,6 +136,11 @@ PairRun evaluate(const RunSettings& settings) {
   }
   for (std::size_t i = 0; i < run.groupers.size(); ++i) {
     progress.begin(call_text(run.methods[i], run.pair.matches.size(), settings.repeat));
+    if (run.methods[i] == kRegister && surfaces) {
+      run.records.push_back(
+          evaluate_registration(run.pair.matches, {surfaces->source, surfaces->target, {}, {}}, run.truth));
+      continue;
+    }
     run.records.push_back(evaluate_method(run.methods[i], run.groupers[i], run.pair.matches, run.truth, settings.repeat,
                                           static_cast<double>(settings.memory_limit)));
   }
@@ -147,6 +153,8 @@ PairRun evaluate(const RunSettings& settings) {
     choose_by_surfaces(run.records, SurfaceChoice(surfaces->source, surfaces->target, workers(settings.match.threads)),
                        run.pair.matches, run.truth);
   }
+  progress.begin("confidence");
+  run.signals = rate_poses(run.records, run.pair.matches, workers(settings.match.threads));
   if (truth) run.bounds = evaluate_bounds(run.pair.matches, *run.truth);
   if (truth && settings.matches.empty()) compare_sides(run, *surfaces, settings.match);
   if (settings.rows == kRows[1]) {

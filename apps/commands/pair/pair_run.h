@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/commands/command_options.h"
+#include "apps/pair/confidence_signals.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/explain.h"
 #include "apps/pair/match_pair.h"
@@ -45,6 +46,7 @@ struct PairRun {
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
+  std::vector<std::optional<ConfidenceSignals>> signals;  ///< of the records whose pose was rated here
   std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the baseline
   std::vector<bool> labels;                  ///< with a truth: which matches are correct
   std::optional<FrameRepeatability> frames;  ///< with a truth

@@ -57,43 +57,21 @@ Json to_json(const ProposedPose& pose) {
           {"target_from_source", corral::to_json(pose.target_from_source)},
           {"support", pose.support},
           {"score", pose.score},
-          {"overlap", pose.overlap},
-          {"rms_pr", pose.rms_pr},
-          {"moved_pr", pose.moved_pr},
-          {"in_front", pose.in_front}};
-}
-
-/// What to do with a pose of this probability.
-const char* verdict(double probability) {
-  return probability >= 0.9 ? "trust it" : probability >= 0.5 ? "look at it" : "do not use it";
-}
-
-/// The first signal beyond those of the poses that the model was fitted to; kSignals if there is none.
-std::size_t outside(const ConfidenceModel& model, const ConfidenceSignals& signals) {
-  std::size_t k = 0;
-  while (k < kSignals && signals[k] >= model.low[k] && signals[k] <= model.high[k]) ++k;
-  return k;
+          {"overlap", pose.surfaces.overlap},
+          {"rms_pr", pose.surfaces.rms_pr},
+          {"moved_pr", pose.surfaces.moved_pr},
+          {"in_front", pose.surfaces.in_front}};
 }
 
 Json confidence_json(const Registration& found, const ConfidenceModel& model) {
   if (!found.signals) return nullptr;
   const double probability = model.probability(*found.signals);
-  const std::size_t beyond = outside(model, *found.signals);
+  const std::size_t beyond = model.outside(*found.signals);
   return {{"probability", probability},
           {"verdict", verdict(probability)},
           {"for", kSignalNames[model.strongest(*found.signals)]},
           {"against", kSignalNames[model.weakest(*found.signals)]},
           {"outside", beyond < kSignals ? Json(kSignalNames[beyond]) : Json(nullptr)}};
-}
-
-std::string confidence_text(const Registration& found, const ConfidenceModel& model) {
-  if (!found.signals) return "";
-  const double probability = model.probability(*found.signals);
-  const std::size_t beyond = outside(model, *found.signals);
-  return std::string(verdict(probability)) + ": probability " + fixed(probability, 3) + " that it registers the pair, as on the " +
-         std::to_string(model.pairs) + " pairs that this was learned from; most for it: " +
-         kSignalNames[model.strongest(*found.signals)] + ", least: " + kSignalNames[model.weakest(*found.signals)] +
-         (beyond < kSignals ? std::string("; outside of what those pairs had: ") + kSignalNames[beyond] : "") + "\n";
 }
 
 Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors, const ConfidenceModel& model) {
@@ -121,7 +99,7 @@ std::string in_words(const Registration& found, bool has_surfaces) {
     const ProposedPose& pose = found.poses[i];
     std::vector<std::string> row = {i == 0 ? "best" : std::to_string(i + 1), pose.method, std::to_string(pose.support),
                                     fixed(pose.score, 3)};
-    if (has_surfaces) row.insert(row.end(), {fixed(pose.overlap, 3), fixed(pose.rms_pr, 3), fixed(pose.in_front, 3)});
+    if (has_surfaces) row.insert(row.end(), {fixed(pose.surfaces.overlap, 3), fixed(pose.surfaces.rms_pr, 3), fixed(pose.surfaces.in_front, 3)});
     table.add(row);
   }
   return table.str();
@@ -159,9 +137,10 @@ int register_two(Settings settings) {
       pair.matches = read_matches(settings.matches);
     std::optional<RegisteredSurfaces> given;
     if (surfaces) {
-      given.emplace(RegisteredSurfaces{surfaces->source, surfaces->target, std::nullopt});
+      std::optional<ViewOptions> sensor;
       if (settings.match.sensor.size() == 3)
-        given->sensor = ViewOptions{{settings.match.sensor[0], settings.match.sensor[1], settings.match.sensor[2]}, {}};
+        sensor = ViewOptions{{settings.match.sensor[0], settings.match.sensor[1], settings.match.sensor[2]}, {}};
+      given.emplace(RegisteredSurfaces{surfaces->source, surfaces->target, sensor, sensor});
     }
     found = register_pair(pair.matches, given, workers(settings.match.threads), begin);
   }
@@ -182,7 +161,8 @@ int register_two(Settings settings) {
   if (settings.json)
     put("", to_json(found, pair.matches.size(), errors, model));
   else
-    put("", in_words(found, surfaces.has_value()) + confidence_text(found, model));
+    put("", in_words(found, surfaces.has_value()) +
+                (found.signals ? confidence_sentence(model, *found.signals) + "\n" : ""));
   return found.poses.empty() ? kPartial : kOk;
 }
 

@@ -4,6 +4,7 @@
 
 #include "apps/commands/pair/run_report.h"
 #include "apps/pair/match_report.h"
+#include "apps/pair/methods.h"
 #include "apps/runtime/output.h"
 
 namespace corral {
@@ -22,9 +23,10 @@ void check_inputs(const RunSettings& settings) {
 }
 
 int run_pair(RunSettings settings) {
+  load_plugins(settings.external);
   const OptionsByName options = parse_set(settings.set);
   std::vector<std::string> in_use = settings.match.in_use();
-  for (const std::string& name : method_names(settings.methods)) in_use.push_back(name);
+  for (const std::string& name : with_plugins(method_names(settings.methods))) in_use.push_back(name);
   require_in_use(options, in_use);
   settings.match.options = surface_part(options);
   check_usage(settings.match);
@@ -64,7 +66,7 @@ void add_run(CLI::App& app, Action& action) {
   add_truth_options(*command, settings->truth, ": adds scores and errors");
   command
       ->add_option("--methods", settings->methods,
-                   "all, paper (those of 2017), or names between commas: " + names_of(groupers(), ","))
+                   "all, paper (those of 2017), or names between commas: " + names_of(methods(), ","))
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for every intermediate file")->type_name("FOLDER");
   command->add_option("--threshold-pr", settings->threshold_pr, "Residual up to which a match is correct")

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/pair/run_report.h"
 
+#include "apps/pair/confidence.h"
 #include "apps/pair/match_report.h"
+#include "apps/pair/methods.h"
 #include "apps/pair/report_pair.h"
 #include "apps/runtime/text_table.h"
 #include "io/disk/file.h"
@@ -30,6 +32,14 @@ std::vector<std::string> files_of(const std::string& method) {
   return {"group_" + method + ".csv", "refine_" + method + ".json", "pose_" + method + ".txt"};
 }
 
+/// The record with the most probable pose, the first of several; nothing if none has a pose.
+std::optional<std::size_t> most_probable(const PairRun& run) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < run.records.size(); ++i)
+    if (run.records[i].confidence && !(best && *run.records[*best].confidence >= *run.records[i].confidence)) best = i;
+  return best;
+}
+
 std::string heading(const PairRun& run, const RunSettings& settings) {
   const std::string pair = settings.matches.empty() ? settings.source + " -> " + settings.target : settings.matches;
   std::string text = pair + ": " + std::to_string(run.pair.matches.size()) + " matches";
@@ -55,6 +65,7 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
                                                           : run.groupers[i].options);
   }
   for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));
+  const std::optional<std::size_t> best = most_probable(run);
   const auto name = [](const std::string& file) { return file.empty() ? Json(nullptr) : Json(file); };
   Json json = {{"source", name(settings.source)},
                {"target", name(settings.target)},
@@ -67,6 +78,10 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
                {"frame_repeatability", json_or_null(run.frames ? run.frames->share() : std::nullopt)},
                {"methods", methods},
                {"bounds", run.truth ? bounds : Json(nullptr)},
+               {"best", best ? Json({{"method", run.records[*best].method},
+                                     {"confidence", *run.records[*best].confidence},
+                                     {"verdict", verdict(*run.records[*best].confidence)}})
+                             : Json(nullptr)},
                {"details",
                 {{"matching", settings.matches.empty() ? corral::to_json(settings.match) : Json(nullptr)},
                  {"drop_stray", settings.drop_stray},
@@ -85,7 +100,7 @@ std::vector<std::string> files_of_run(const std::string& folder, const std::vect
   if (folder.empty()) return files;
   for (const char* name : {"matches.csv", "match_report.json", "methods.csv", "run.json", "dense.csv"})
     files.push_back(folder + "/" + name);
-  for (const Grouper& grouper : groupers())
+  for (const Grouper& grouper : methods())
     for (const std::string& name : files_of(grouper.name)) files.push_back(folder + "/" + name);
   for (const ExternalMethod& method : externals)
     for (const std::string& name : files_of(method.name)) files.push_back(folder + "/" + name);
@@ -121,9 +136,16 @@ std::string in_words(const PairRun& run, const RunSettings& settings) {
   if (settings.rows == kRows[1])
     text += "\nrefined over all matches, from there:\n" + all_rows_text(run.records, run.bounds);
   if (settings.dense) text += "\ndense refinement, points to planes:\n" + dense_text(run.records, run.bounds);
-  if (settings.explain) text += "\n";
   if (run.truth && !run.fit)
     text += "Errors are over the source points of the correct matches, the RMSE over those of all matches.\n";
+  if (const std::optional<std::size_t> best = most_probable(run)) {
+    const MethodRecord& record = run.records[*best];
+    text += "best pose: " + record.method + ", " +
+            (run.signals[*best] ? confidence_sentence(built_in_confidence().table, *run.signals[*best])
+                                : verdict(*record.confidence) + (": probability " + fixed(*record.confidence, 3))) +
+            ".\n";
+  }
+  if (settings.explain) text += "\n";
   for (const Explanation& explanation : run.explanations) text += explanation.method + ": " + explanation.text + ".\n";
   return text;
 }

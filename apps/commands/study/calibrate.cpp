@@ -6,17 +6,13 @@
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/confidence.h"
-#include "apps/pair/evaluate_pair.h"
-#include "apps/pair/match_pair.h"
-#include "apps/pair/read_surface.h"
+#include "apps/pair/load_pair.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/text_table.h"
 #include "apps/runtime/workers.h"
 #include "io/disk/file.h"
-#include "io/matches/matches_file.h"
 #include "io/pairs/dataset_file.h"
-#include "io/pose/transform_file.h"
 #include "kernel/error.h"
 
 namespace corral {
@@ -34,38 +30,18 @@ struct JudgedPair {
   std::optional<JudgedPose> surfaces, table;
 };
 
-std::string group_of(const Dataset& dataset, const DatasetPair& pair) {
-  for (const char* column : {"object", "model", "scene"}) {
-    const std::string text = attribute_text(dataset, pair, column);
-    if (!text.empty()) return text;
-  }
-  return pair.name;
-}
-
 JudgedPair judge_pair(const Dataset& dataset, const DatasetPair& given) {
-  const DatasetPair pair = dataset.with_paths(given);
-  std::optional<Mesh> source, target;
-  if (pair.has_surfaces()) source = read_surface(pair.source), target = read_surface(pair.target);
-  CorrespondenceSet matches;
-  if (pair.matches.empty()) {
-    MatchSettings settings;
-    settings.resolution = dataset.resolution;
-    settings.threads = 1;
-    matches = match_pair(*source, *target, settings).matches;
-  } else {
-    matches = read_matches(pair.matches);
-  }
-  const RigidTransform pose = read_transform(pair.truth);
-  PairTruth truth = source ? pair_truth(*source, *target, pose, matches.resolution, 4) : table_truth(matches, pose, 4);
-  for (const std::string& equal : pair.equal_truths) truth.equals.push_back(read_transform(equal));
+  MatchSettings settings;
+  settings.threads = 1;
+  const LoadedPair pair = load_pair(dataset, given, settings);
   const auto judged = [&](const Registration& found) -> std::optional<JudgedPose> {
     if (found.poses.empty()) return std::nullopt;
-    const auto errors = pose_errors(found.poses.front().target_from_source, truth, matches.resolution);
+    const auto errors = pose_errors(found.poses.front().target_from_source, *pair.truth, pair.matches.resolution);
     return JudgedPose{*found.signals, is_registered(errors), group_of(dataset, given)};
   };
   JudgedPair result;
-  if (source) result.surfaces = judged(register_pair(matches, RegisteredSurfaces{*source, *target, {}}));
-  result.table = judged(register_pair(matches, std::nullopt));
+  if (pair.meshes) result.surfaces = judged(register_pair(pair.matches, pair.surfaces()));
+  result.table = judged(register_pair(pair.matches, std::nullopt));
   return result;
 }
 

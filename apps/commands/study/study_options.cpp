@@ -22,16 +22,21 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   add_set_option(command, options.set);
   command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
   add_pose_options(command, options.rows, options.select);
+  command.add_flag("--confidence", options.confidence,
+                   "Also how probable it is that each pose is right, without the truth (paper/confidence.toml)");
 }
 
 StudyCall study_call(const StudyOptions& options) {
+  load_plugins(options.external);
   StudyCall call = study_call(options.experiments, options.data);
   if (!options.methods.empty()) call.methods = {options.methods, read_file(options.methods)};
   call.options = parse_set(options.set);
+  call.plugins = options.external.plugins;
   call.externals = external_methods(options.external);
   call.dense = options.dense;
   call.all_rows = options.rows == kRows[1];
   call.by_surface = options.select == kSelect[1];
+  call.confidence = options.confidence;
   return call;
 }
 
@@ -52,6 +57,7 @@ std::vector<std::string> words_of(const StudyOptions& options) {
   for (const std::string& option : options.set) words.insert(words.end(), {"--set", option});
   if (options.dense) words.push_back("--dense");
   if (options.rows != kRows[0]) words.insert(words.end(), {"--rows", options.rows});
+  if (options.confidence) words.push_back("--confidence");
   if (options.select != kSelect[0]) words.insert(words.end(), {"--select", options.select});
   return words;
 }

@@ -18,7 +18,7 @@ struct StudyOptions {
   std::string methods;  ///< file; may be empty
   ExternalSettings external;
   std::vector<std::string> set;
-  bool dense = false;
+  bool dense = false, confidence = false;
   std::string rows = kRows[0], select = kSelect[0];
 };
 void add_study_options(CLI::App& command, StudyOptions& options);

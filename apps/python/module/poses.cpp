@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "apps/pair/evaluate_pair.h"
+#include "apps/pair/methods.h"
+#include "apps/pair/portfolio.h"
 #include "apps/pair/report_pair.h"
 #include "apps/python/module/arrays.h"
 #include "apps/python/module/parts.h"
@@ -62,16 +64,16 @@ py::dict refine_all(const CorrespondenceSet& table, const py::object& start) {
 }
 
 /// Each grouper once, with its options.
-std::vector<std::pair<std::string, ConfiguredGrouper>> configured(const std::vector<std::string>& methods,
+std::vector<std::pair<std::string, ConfiguredGrouper>> configured(const std::vector<std::string>& names,
                                                                   const py::dict& options) {
   std::vector<std::pair<std::string, ConfiguredGrouper>> groupers;
   std::vector<std::string> unused;
   for (const auto& [name, values] : options) unused.push_back(name.cast<std::string>());
-  for (const std::string& name : expand_groupers(methods)) {
+  for (const std::string& name : expand_groupers(names)) {
     for (const auto& [other, grouper] : groupers)
       if (other == name) throw InvalidInput("evaluate_table", "methods", "with " + name + " twice", "each once");
     const py::dict values = options.contains(name) ? py::dict(options[name.c_str()]) : py::dict();
-    groupers.emplace_back(name, find_grouper(name).configure(overrides_of(values, name)));
+    groupers.emplace_back(name, find_method(name).configure(overrides_of(values, name)));
     unused.erase(std::remove(unused.begin(), unused.end(), name), unused.end());
   }
   if (!unused.empty())
@@ -91,6 +93,7 @@ py::list evaluate(const CorrespondenceSet& table, const py::object& truth, const
     const PairTruth judged = table_truth(table, right, threshold);
     for (const auto& [name, grouper] : groupers)
       records.push_back(evaluate_method(name, grouper, table, judged, repeat));
+    rate_poses(records, table);
     for (MethodRecord& bound : evaluate_bounds(table, judged)) records.push_back(std::move(bound));
   }
   py::list list;

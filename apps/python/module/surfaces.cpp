@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <pybind11/stl.h>
 
+#include "apps/pair/confidence.h"
+#include "apps/pair/load_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/match_report.h"
 #include "apps/python/module/arrays.h"
 #include "apps/python/module/parts.h"
 #include "apps/python/module/records.h"
+#include "apps/runtime/workers.h"
 #include "io/matches/matches_file.h"
 #include "io/mesh/mesh_file.h"
 
@@ -88,11 +91,44 @@ py::tuple match(const py::tuple& source, const py::tuple& target, const std::str
   return py::make_tuple(std::move(found.matches), as_python(to_json(found.report)), advice(found.report));
 }
 
+/// The best pose of a pair, what weighs for it, and the poses beside it.
+py::dict as_dict(const Registration& found, const ConfidenceModel& model) {
+  py::dict dict;
+  py::list others;
+  for (std::size_t i = 1; i < found.poses.size(); ++i) others.append(or_none(std::optional(found.poses[i].target_from_source)));
+  dict["pose"] = found.poses.empty() ? py::object(py::none()) : or_none(std::optional(found.poses[0].target_from_source));
+  dict["others"] = others;
+  dict["method"] = found.poses.empty() ? py::object(py::none()) : py::cast(found.poses[0].method);
+  dict["confidence"] = found.signals ? py::cast(model.probability(*found.signals)) : py::object(py::none());
+  dict["verdict"] = found.signals ? py::cast(verdict(model.probability(*found.signals))) : py::object(py::none());
+  py::dict signals;
+  if (found.signals)
+    for (std::size_t i = 0; i < kSignals; ++i) signals[kSignalNames[i]] = (*found.signals)[i];
+  dict["signals"] = signals;
+  return dict;
+}
+
+/// `source` and `target` may both be None: then the table alone decides.
+py::dict register_surfaces(const CorrespondenceSet& table, const py::object& source, const py::object& target, int threads) {
+  const bool has_surfaces = !source.is_none() && !target.is_none();
+  std::optional<PairMeshes> meshes;
+  if (has_surfaces) meshes = {mesh_of(source.cast<py::tuple>(), "source"), mesh_of(target.cast<py::tuple>(), "target")};
+  Registration found;
+  {
+    const py::gil_scoped_release released;
+    std::optional<RegisteredSurfaces> surfaces;
+    if (meshes) surfaces.emplace(meshes->surfaces());
+    found = register_pair(table, surfaces, workers(threads));
+  }
+  return as_dict(found, has_surfaces ? built_in_confidence().surfaces : built_in_confidence().table);
+}
+
 }  // namespace
 
 void add_surfaces(py::module_& module) {
   module.def("read_mesh", &read);
   module.def("match", &match);
+  module.def("register", &register_surfaces);
   module.def(
       "read_matches", [](const std::string& path) { return read_matches(path); },
       py::call_guard<py::gil_scoped_release>());

@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from . import _corral
 from .tables import Matches, _table_of
 
-__all__ = ["Mesh", "RefinedPose", "evaluate_table", "match", "read_matches", "read_mesh", "refine", "refine_over_all"]
+__all__ = ["Mesh", "RefinedPose", "evaluate_table", "match", "read_matches", "read_mesh", "refine", "refine_over_all",
+           "Registration", "register"]
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,18 @@ class RefinedPose:
     final_cost: float | None  #: never larger
     condition: float | None  #: of the normal equations, in pr and radians
     covariance: NDArray[float64] | None  #: (6, 6): of rotation (radians, about the axes of the target) and translation (mesh units)
+
+
+@dataclass(frozen=True)
+class Registration:
+    """The pose that lays one surface on another, and how far it can be trusted without a truth. None where there is none."""
+
+    pose: NDArray[float64] | None  #: (4, 4), target from source, mesh units
+    confidence: float | None  #: probability that its mean error is at most 5 pr
+    verdict: str | None  #: "trust it", "look at it" or "do not use it"
+    method: str | None  #: the grouper that proposed it
+    others: Sequence[NDArray[float64]]  #: (4, 4) each: other poses, the best first
+    signals: Mapping[str, float]  #: what the confidence is made of; larger is safer
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
@@ -105,6 +118,23 @@ def match(source: Mesh | ArrayLike, target: Mesh | ArrayLike, *, resolution: str
     return Matches._of(table, report)
 
 
+def register(matches: Matches, source: Mesh | ArrayLike | None = None, target: Mesh | ArrayLike | None = None, *,
+             threads: int = 0) -> Registration:
+    """The pose of a pair without a truth, as `corral register`: several groupers propose poses, the surfaces choose.
+
+    matches
+        The table of match(source, target), or any other.
+    source, target
+        Mesh, or vertices (V, 3), mesh units. Without them the table alone chooses.
+    threads
+        0: as many as there are processors. Results do not depend on it.
+    """
+    if (source is None) != (target is None):
+        raise _corral.InvalidInput("register: source and target: expected both surfaces, or none")
+    parts = (None, None) if source is None else (_parts(source), _parts(target))
+    return Registration(**_corral.register(_table_of(matches), *parts, threads))
+
+
 def refine(matches: Matches, selected: ArrayLike, *, loss: str = "cauchy", loss_scale_pr: float = 5,
            maximum_iterations: int = 500, start: ArrayLike | None = None) -> RefinedPose:
     """The rigid pose that minimises a robust cost over the selected matches, as `corral refine`.
@@ -144,6 +174,7 @@ def evaluate_table(matches: Matches, truth: ArrayLike, methods: str | Sequence[s
         Timed calls of each; the median counts.
 
     Returns a dict for each grouper with the keys of `corral run --json`, then "oracle" (all correct matches) and "baseline" (all
-    matches); pandas.DataFrame makes a table of them. A grouper that fails is recorded so in its `status`.
+    matches); pandas.DataFrame makes a table of them. A grouper that fails is recorded so in its `status`; `confidence` is the
+    probability that its pose is right, worked out without the truth.
     """
     return _corral.evaluate_table(_table_of(matches), truth, _names(methods), _each(options), threshold_pr, repeat)

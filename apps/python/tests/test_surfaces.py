@@ -56,6 +56,19 @@ class Surfaces(unittest.TestCase):
                 corral.match(**{"source": self.source, "target": self.target, **changes})
             self.assertIn(word, str(caught.exception))
 
+    def test_register(self):
+        found = corral.register(self.matches, self.source, self.target)
+        self.assertEqual(found.verdict, "trust it")
+        self.assertGreaterEqual(found.confidence, 0.9)
+        self.assertLess(np.abs(found.pose - self.truth).max(), 0.5)
+        self.assertIn("residual", found.signals)
+        alone = corral.register(self.matches)
+        self.assertEqual(alone.pose.shape, (4, 4))
+        with self.assertRaises(corral.InvalidInput):
+            corral.register(self.matches, self.source)
+        nothing = corral.register(corral.Matches(np.zeros((0, 3)), np.zeros((0, 3)), resolution=1))
+        self.assertEqual((nothing.pose, nothing.confidence, nothing.verdict), (None, None, None))
+
     def test_advice_is_a_warning(self):
         with self.assertWarnsRegex(UserWarning, "keypoint"):
             x, y = np.meshgrid(np.arange(40.0), np.arange(40.0))

@@ -91,11 +91,11 @@ class RegisterSurfaces : public ::testing::Test {
 };
 
 TEST_F(RegisterSurfaces, TheSurfacesChooseAndRefineThePose) {
-  const Registration found = register_pair(matches_, RegisteredSurfaces{source_, target_, {}});
+  const Registration found = register_pair(matches_, RegisteredSurfaces{source_, target_, {}, {}});
   ASSERT_FALSE(found.poses.empty());
   const ProposedPose& best = found.poses.front();
   EXPECT_LT(point_error(best.target_from_source, motion(), source_.vertices, matches_.resolution)->mean_pr, 0.3);
-  EXPECT_GT(best.overlap, 0.99);
+  EXPECT_GT(best.surfaces.overlap, 0.99);
   EXPECT_GT(best.score, 0.8);
   std::set<double> scores;
   for (const ProposedPose& pose : found.poses) scores.insert(pose.score);
@@ -103,8 +103,8 @@ TEST_F(RegisterSurfaces, TheSurfacesChooseAndRefineThePose) {
 }
 
 TEST_F(RegisterSurfaces, IsTheSameForAnyNumberOfThreads) {
-  const Registration one = register_pair(matches_, RegisteredSurfaces{source_, target_, {}});
-  const Registration two = register_pair(matches_, RegisteredSurfaces{source_, target_, {}}, workers(2));
+  const Registration one = register_pair(matches_, RegisteredSurfaces{source_, target_, {}, {}});
+  const Registration two = register_pair(matches_, RegisteredSurfaces{source_, target_, {}, {}}, workers(2));
   ASSERT_EQ(one.poses.size(), two.poses.size());
   for (std::size_t i = 0; i < one.poses.size(); ++i) {
     EXPECT_EQ(one.poses[i].target_from_source.rotation, two.poses[i].target_from_source.rotation);

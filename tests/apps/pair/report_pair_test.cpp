@@ -76,9 +76,9 @@ TEST(MethodsCsv, ReadsBackAsTheSameNumbers) {
             "add_share,add_s_share,success_5pr,success_from_pr,success_add,success_add_s,"
             "initial_rotation_error_deg,initial_translation_error_pr,"
             "initial_rmse_pr,initial_mean_error_pr,initial_add_share,initial_add_s_share,initial_success_5pr,"
-            "initial_success_from_pr,initial_success_add,initial_success_add_s,outcome,status");
+            "initial_success_from_pr,initial_success_add,initial_success_add_s,confidence,outcome,status");
   const auto fields = fields_of(lines[1]);
-  ASSERT_EQ(fields.size(), 28U);
+  ASSERT_EQ(fields.size(), 29U);
   EXPECT_EQ(fields[0], "gc");
   EXPECT_EQ(fields[1], "3");
   const std::vector<double> numbers = {2.0 / 3, 2.0 / 7, 0.4,  // the selection
@@ -90,8 +90,9 @@ TEST(MethodsCsv, ReadsBackAsTheSameNumbers) {
   EXPECT_EQ(fields[23], "") << "no threshold of the curve is large enough";
   EXPECT_EQ(fields[24], "0") << "a tenth of the diameter is not below a tenth";
   EXPECT_EQ(fields[25], "0");
-  EXPECT_EQ(fields[26], "saved");
-  EXPECT_EQ(fields[27], "refined");
+  EXPECT_EQ(fields[26], "") << "it was not asked for";
+  EXPECT_EQ(fields[27], "saved");
+  EXPECT_EQ(fields[28], "refined");
 }
 
 TEST(MethodsCsv, WhatIsUndefinedIsEmpty) {
@@ -101,15 +102,15 @@ TEST(MethodsCsv, WhatIsUndefinedIsEmpty) {
   record.errors.reset();
   record.initial_errors.reset();
   record.pose = RefinedPose();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,0,0,0.1,,,,,,,0,,0,0,,,,,,,0,,0,0,lost,too few rows");
+  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,0,0,0.1,,,,,,,0,,0,0,,,,,,,0,,0,0,,lost,too few rows");
   record.score.reset();
-  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,,,0.1,,,,,,,,,,,,,,,,,,,,,,too few rows");
+  EXPECT_EQ(lines_of(methods_csv({record}))[1], "gc,0,,,,0.1,,,,,,,,,,,,,,,,,,,,,,,too few rows");
 }
 
 TEST(MethodsCsv, AFailureIsARowWithoutNumbers) {
   const auto lines = lines_of(methods_csv({full_record(), failed_record()}));
   ASSERT_EQ(lines.size(), 3U);
-  EXPECT_EQ(lines[2], "ss,,,,,,,,,,,,,,,,,,,,,,,,,,,failed: a ;b;; c;d");
+  EXPECT_EQ(lines[2], "ss,,,,,,,,,,,,,,,,,,,,,,,,,,,,failed: a ;b;; c;d");
 }
 
 TEST(MethodsText, HasARowPerMethod) {
@@ -147,7 +148,7 @@ TEST(ToJson, AMethodHasItsKeysInOrder) {
                         "success_from_pr", "success_add", "success_add_s", "initial_rotation_error_deg",
                         "initial_translation_error_pr", "initial_rmse_pr", "initial_mean_error_pr", "initial_add_share",
                         "initial_add_s_share", "initial_success_5pr", "initial_success_from_pr", "initial_success_add",
-                        "initial_success_add_s", "outcome", "status"));
+                        "initial_success_add_s", "confidence", "outcome", "status"));
   EXPECT_EQ(json["selected"].dump(), "3");
   EXPECT_EQ(json["rmse_pr"], 1e300);
 }

@@ -146,5 +146,15 @@ TEST(Quantile, IsLinearBetweenValues) {
   EXPECT_EQ(quantile_of({7}, 0.25), 7);
 }
 
+TEST(WilsonInterval, IsThatOfTheTextbooks) {
+  const auto [low, high] = wilson_interval(5, 10);
+  EXPECT_NEAR(low, 0.2366, 1e-4);
+  EXPECT_NEAR(high, 0.7634, 1e-4);
+  EXPECT_EQ(wilson_interval(0, 10).first, 0);
+  EXPECT_NEAR(wilson_interval(0, 10).second, 0.2775, 1e-4);
+  EXPECT_EQ(wilson_interval(10, 10).second, 1);
+  EXPECT_EQ(wilson_interval(0, 0), std::make_pair(0.0, 1.0));
+}
+
 }  // namespace
 }  // namespace corral

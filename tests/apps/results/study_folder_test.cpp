@@ -44,6 +44,7 @@ TEST(StudyRecord, ReadsBackWhatItWrote) {
                    {},
                    1e-9,
                    40,
+                   0.9,
                    "s/x.csv"};
   const ScratchFolder folder;
   const std::string text = csv_line(record_columns()) + record_line(full) + record_line({});

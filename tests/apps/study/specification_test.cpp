@@ -89,7 +89,7 @@ TEST(Specification, TheProgramCarriesThePapersExperiments) {
               ElementsAre("clutter", "cranfield-fpfh", "cranfield-shot", "cranfield", "density", "detectors-fpfh",
                           "detectors", "extended-clutter", "extended-inlier-ratio", "extended-noise", "extended-overlap",
                           "extended-size", "extended-time", "inlier-ratio", "matches", "noise", "occlusion", "overlap",
-                          "peers-heaps", "peers-views", "size", "threshold", "time", "tuned-clutter",
+                          "peers-heaps", "peers-views", "scoreboard", "size", "threshold", "time", "tuned-clutter",
                           "tuned-inlier-ratio", "tuned-noise", "tuned-overlap", "tuning-consistency",
                           "tuning-spectral"));
   std::string figures;

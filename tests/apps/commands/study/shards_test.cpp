@@ -99,7 +99,7 @@ TEST_F(Shards, WhatDoesNotBelongIsNamed) {
   put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "corral journal 2", "corral journal 7")));
   EXPECT_THAT(merge("run").err, HasSubstr("expected corral journal 2"));
   place_.put(journal, before);
-  put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "0.1.0", "0.0.9")));
+  put_line(journal, 0, hashed(replaced(lines_of(before)[0].substr(33), "0.2.0", "0.0.9")));
   EXPECT_THAT(merge("run").err, HasSubstr("2-of-2.1.journal: was made by version 0.0.9 of the program, unlike "));
   place_.put(journal, before);
   EXPECT_EQ(merge("run").status, 0);
