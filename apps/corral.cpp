@@ -87,6 +87,7 @@ int main(int argc, char** argv) {
   corral::add_plan(app, action);
   corral::add_calibrate(app, action);
   corral::add_merge(app, action);
+  corral::add_verify(app, action);
   corral::add_submit(app, action);
   corral::add_dataset(app, action);
   corral::add_compare(app, action);

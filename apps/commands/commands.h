@@ -36,6 +36,7 @@ void add_evaluate(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
 void add_submit(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);
 void add_dataset(CLI::App& app, Action& action);
