@@ -226,10 +226,20 @@ class Verifier {
   VerifyOutcome outcome_;
 };
 
+/// A study may come from anyone, and with it what it calls.
+void check_programs(const StudyCall& call, const std::string& folder) {
+  std::string commands;
+  for (const ExternalMethod& external : call.externals)
+    commands += (commands.empty() ? "" : ", ") + corral::quoted(external.command);
+  if (!commands.empty())
+    throw IoError(folder, "", "calls other programs: " + commands + "; expected --programs, if these may run here");
+}
+
 }  // namespace
 
 VerifyOutcome verify_study(const VerifySettings& settings, const std::function<void(const StudyProgress&)>& progress) {
   const StudyJournals study = find_study(settings.folder);
+  if (!settings.programs) check_programs(study.call, settings.folder);
   const WorkList list = work_list_of(study, settings.data);
   FinishedUnits finished(list, settings.folder, {});
   for (const JournalFile& journal : study.files) {

@@ -57,6 +57,8 @@ void add_verify(CLI::App& app, Action& action) {
   command->add_option("--jobs", settings->verify.jobs, "Pairs at a time (default: as many as there are processors)")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
+  command->add_flag("--programs", settings->verify.programs,
+                    "Call the programs that the study was made with (--external of 'corral evaluate')");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
       "Pairs are read, matched, grouped and scored again, with nothing from the cache of the study. Every cell of "

@@ -108,6 +108,20 @@ TEST_F(Verify, NamesFilesThatAreOthersNow) {
               HasSubstr("pair b3r/m2-0.05: has no whole result in units/, or its selections are missing\n"));
 }
 
+// A study that comes from elsewhere must not decide what runs here.
+TEST_F(Verify, ProgramsAreCalledOnlyWhereTheyMay) {
+  const std::string external = " --external 'mine=sh -c \"touch called; echo 0 > {group}\" {matches}'";
+  ASSERT_EQ(place_.corral("evaluate small.toml --data data -o other" + external).status, 0);
+  std::filesystem::remove(place_ / "called");
+  Outcome outcome = place_.corral("verify other --sample 1");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("calls other programs: 'sh -c"), HasSubstr("expected --programs")));
+  EXPECT_FALSE(std::filesystem::exists(place_ / "called"));
+  outcome = place_.corral("verify other --sample 1 --programs");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(place_ / "called"));
+}
+
 TEST_F(Verify, SaysWhatIsWrongWithTheCall) {
   EXPECT_EQ(verify("--sample 0").status, 2);
   EXPECT_EQ(verify("--sample 1 --all").status, 2);
