@@ -88,6 +88,7 @@ int main(int argc, char** argv) {
   corral::add_advise(app, action);
   corral::add_calibrate(app, action);
   corral::add_merge(app, action);
+  corral::add_verify(app, action);
   corral::add_submit(app, action);
   corral::add_scoreboard(app, action);
   corral::add_dataset(app, action);

@@ -37,6 +37,7 @@ void add_advise(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
 void add_submit(CLI::App& app, Action& action);
 void add_scoreboard(CLI::App& app, Action& action);
 void add_scan(CLI::App& app, Action& action);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/external_method.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -12,6 +10,7 @@
 #include "apps/pair/foreign_answer.h"
 #include "apps/pair/methods.h"
 #include "apps/runtime/child_program.h"
+#include "apps/runtime/temporary_folder.h"
 #include "io/disk/file.h"
 #include "io/matches/matches_file.h"
 #include "io/text/line_reader.h"
@@ -23,26 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for the files of a call, removed with all that lies in it.
-class CallFolder {
- public:
-  CallFolder() {
-    std::string name = (fs::temp_directory_path() / "corral_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw IoError(name, "", "cannot be created, for the files of a call");
-    path_ = name;
-  }
-  ~CallFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  CallFolder(const CallFolder&) = delete;
-  CallFolder& operator=(const CallFolder&) = delete;
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
-
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
@@ -51,7 +30,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 /// The files of a call by what stands for them in its command.
 using CallFiles = std::vector<std::pair<std::string, std::string>>;
 
-CallFiles files_in(const CallFolder& folder) {
+CallFiles files_in(const TemporaryFolder& folder) {
   return {{"{matches}", folder / "matches.csv"}, {"{group}", folder / "group.csv"}, {"{pose}", folder / "pose.txt"}};
 }
 
@@ -139,7 +118,7 @@ ExternalMethod parse_external(const std::string& text) {
 }
 
 ExternalAnswer call_external(const ExternalMethod& method, const CorrespondenceSet& matches) {
-  const CallFolder folder;
+  const TemporaryFolder folder;
   const CallFiles files = files_in(folder);
   const ChildEnd end = call(method, matches, files);
   if (end.is_timeout) fail(method, "killed after " + to_text(method.timeout_s) + " s (--external-timeout)", end, files);
@@ -166,7 +145,7 @@ double start_up_ms(const ExternalMethod& method) {
   const std::lock_guard<std::mutex> lock(mutex);
   const auto found = known.find(method.command);
   if (found != known.end()) return found->second;
-  const CallFolder folder;
+  const TemporaryFolder folder;
   CorrespondenceSet empty;
   empty.resolution = 1;
   return known[method.command] = call(method, empty, files_in(folder)).milliseconds;

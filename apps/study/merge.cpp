@@ -46,7 +46,7 @@ void bring(const std::string& part, const std::string& folder) {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(part) / room, ignored)) {
       const std::string ending = entry.path().extension().string();
       if (entry.is_regular_file(ignored) && (ending == ".csv" || ending == ".journal"))
-        copy_to(entry.path(), folder / fs::relative(entry.path(), part));
+        copy_to(entry.path(), folder / entry.path().lexically_relative(part));  // wherever a link leads
     }
 }
 

@@ -13,6 +13,8 @@ function element(tag, attributes = {}, ...children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === 'function')
       made.addEventListener(name, value);
+    else if (name === 'style')  // as an attribute the policy of the page refuses it
+      made.style.cssText = value;
     else if (value !== false && value !== null)
       made.setAttribute(name, value === true ? '' : value);
   }

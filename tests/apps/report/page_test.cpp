@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "io/disk/file.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "tests/io/scratch.h"
+#include "tests/support/hostile_names.h"
 #include "tests/support/meshes.h"
 #include "tests/support/study_run.h"
 
@@ -29,9 +31,17 @@ class Page : public ::testing::Test {
     if (!std::filesystem::exists("/usr/share/javascript/three/three.min.js") ||
         !std::filesystem::exists("/usr/share/javascript/chart.js/chart.min.js"))
       GTEST_SKIP() << "libjs-three or libjs-chart.js is not installed";
-    const ExperimentInfo experiment{
-        "noise",      "Noise <b> & \"more\" </script><script>alert(1)</script>", "a",          "spheres", "noise_pr",
-        "noise (pr)", {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.3", 0.3, 0.3}}, {"ss", "gc"}, {}, 4, 1};
+    const ExperimentInfo experiment{"noise",
+                                    "Noise <b> & \"more\" </script><script>alert(1)</script>",
+                                    "a",
+                                    "spheres",
+                                    "noise_pr",
+                                    "noise (pr)",
+                                    {{"0.1", 0.1, 0.1}, {"0.2", 0.2, 0.2}, {"0.3", 0.3, 0.3}},
+                                    {"ss", "gc"},
+                                    {},
+                                    4,
+                                    1};
     std::vector<StudyCase> cases;
     for (const int seed : {1, 2}) {
       const Mesh sphere = bumpy_sphere(3, static_cast<std::uint64_t>(seed));
@@ -187,6 +197,46 @@ TEST_F(Page, NothingFromTheDataIsMarkup) {
   for (std::size_t at = 0; (at = page.find("</script", at)) != std::string::npos; ++at) ++closed;
   EXPECT_EQ(opened, 11);  // the data, three of the libraries, seven of ours
   EXPECT_EQ(closed, 11);
+}
+
+// A study is a folder that anyone may have written.
+TEST_F(Page, NamesOfAnyKindAreText) {
+  const std::string plain = page();
+  for (const std::string& name : hostile_names()) {
+    std::vector<StudyFolder> found = runs();
+    ExperimentInfo& info = found[0].experiments[0];
+    info.levels[0].label = info.methods[0] = info.axis = info.dataset = name;
+    for (StudyRecord& record : found[0].records) {
+      record.dataset = record.scene = name;
+      if (record.method == "ss") record.method = name;
+      if (record.level == "0.1") record.level = name;
+      if (record.pair == "pair1") record.pair = name;
+      record.status.cause = name;
+    }
+    const std::string page = report_page(found, results_of(found), {});
+    const auto tags = [](const std::string& text) { return std::count(text.begin(), text.end(), '<'); };
+    EXPECT_EQ(tags(page), tags(plain)) << name.substr(0, 100);
+    if (name[0] != '\xff') {  // bytes that are no UTF-8 are replaced
+      EXPECT_EQ(data_of(page)["experiments"][0]["axis"], name);
+    }
+  }
+}
+
+TEST_F(Page, OnlyItsOwnScriptsRun) {
+  const std::string page = this->page();
+  const std::string open = "script-src 'nonce-";
+  const std::size_t at = page.find(open) + open.size();
+  const std::string nonce = page.substr(at, page.find('\'', at) - at);
+  EXPECT_EQ(nonce.size(), 32u);
+  EXPECT_THAT(page, HasSubstr("<meta http-equiv=\"Content-Security-Policy\""));
+  EXPECT_EQ(page.find("unsafe"), page.find("unsafe", page.find("<script nonce"))) << "none in the policy";
+  int with_nonce = 0;
+  for (std::size_t next = 0; (next = page.find("<script nonce=\"" + nonce + "\">", next)) != std::string::npos; ++next)
+    ++with_nonce;
+  EXPECT_EQ(with_nonce, 10);
+  PageOptions other;
+  other.title = "another";
+  EXPECT_EQ(this->page(other).find(nonce), std::string::npos);
 }
 
 TEST_F(Page, SaysWhatIsMissing) {

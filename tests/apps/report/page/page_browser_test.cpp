@@ -11,6 +11,7 @@
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/apps/report/page/browser.h"
+#include "tests/support/hostile_names.h"
 #include "tests/support/meshes.h"
 #include "tests/support/study_run.h"
 
@@ -60,6 +61,16 @@ struct Desk {
     options.most_records = 13;  // of 23: the pairs at 0.1 and the one that failed
     options.pairs_in_3d = 1;
     write_file(folder / "sampled.html", report_page(runs, results_of(runs), options));
+    std::vector<StudyFolder> hostile = runs;
+    std::string all;  // each of them at work, and all in one
+    for (const std::string& name : hostile_names()) all += name;
+    hostile[0].experiments[0].methods[0] = all;
+    for (StudyRecord& record : hostile[0].records) {
+      if (record.method == "ss") record.method = all;
+      if (record.pair == "Ball1-low") record.pair = all;
+      record.scene = record.status.cause = all;
+    }
+    write_file(folder / "hostile.html", report_page(hostile, results_of(hostile), {}));
   }
 
   ScratchFolder folder;
@@ -372,6 +383,22 @@ TEST_F(PageInBrowser, TurnsComparesAndLaysOnEachOther) {
   const Json unjudged = pixels();
   EXPECT_LT(unjudged["right"].get<int>() + unjudged["wrong"].get<int>(), 100);
   EXPECT_GT(unjudged["target"], 5000);
+}
+
+TEST_F(PageInBrowser, NamesAreNeverMarkup) {
+  const Json tags = js("document.querySelectorAll('script').length");
+  browser_->open(desk_->folder / "hostile.html");
+  wait_for_drawing();
+  EXPECT_EQ(js("typeof window.hacked"), "undefined");
+  EXPECT_EQ(js("document.querySelectorAll('img, svg, i').length"), 0);
+  EXPECT_EQ(js("document.querySelectorAll('script').length"), tags);
+  EXPECT_THAT(js("document.querySelector('#records-table').textContent").get<std::string>(),
+              HasSubstr("<img src=x onerror=window.hacked=1>"));
+  Browser other{800, 600};  // of its own: that it complains is asked for
+  other.open(desk_->folder / "hostile.html");
+  other.evaluate("document.body.append(Object.assign(element('script'), {textContent: 'window.hacked = 1'}))");
+  EXPECT_EQ(other.evaluate("typeof window.hacked"), "undefined") << "a script without the nonce has run";
+  EXPECT_THAT(other.complaints(), ElementsAre(HasSubstr("Content Security Policy")));
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace corral::testing {
+
+/// What a name may be that somebody else has chosen. Where one of them is run, it sets window.hacked.
+inline std::vector<std::string> hostile_names() {
+  return {"<script>window.hacked=1</script>",
+          "</script><script>window.hacked=1</script>",
+          "<img src=x onerror=window.hacked=1>",
+          "\"'><svg onload=window.hacked=1>",
+          "<!--<script>",
+          "javascript:window.hacked=1",
+          "`touch hacked`$(touch hacked);touch hacked",
+          "\\input{hacked}\\write18{touch hacked}",
+          "'; system('touch hacked'); print '",
+          "../../hacked",
+          "a\tb\nc\x01\x1b[31m\x7f",
+          "\xff\xfe\xc0\x80",
+          "__proto__",
+          std::string(10240, '<')};
+}
+
+}  // namespace corral::testing
