@@ -4,7 +4,8 @@ get_filename_component(CORRAL_ROOT ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-option(CORRAL_SANITIZE "instrument everything with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+set(CORRAL_SANITIZE "" CACHE STRING "instrument everything with these sanitizers, such as address,undefined")
+option(CORRAL_FUZZ "build the fuzzers of tests/fuzz (needs clang)" OFF)
 
 # The compile options of all our targets; flags of libraries are not among them.
 add_library(corral_options INTERFACE)
@@ -12,18 +13,28 @@ target_compile_options(corral_options INTERFACE -Wall -Wextra -Wpedantic -Wshado
   -ffp-contract=off -fno-math-errno)
 # Vector code is compiled for AVX3 (AVX-512), AVX2 and SSE4, or for NEON, and once without; Highway chooses at run time. Its
 # other targets bring nothing for floats and doubles.
-target_compile_definitions(corral_options INTERFACE
-  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+set(unused "HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128")
+if(CORRAL_FUZZ)  # one with vectors and the plain one
+  string(APPEND unused "|HWY_AVX3|HWY_SSE4")
+endif()
+target_compile_definitions(corral_options INTERFACE "HWY_DISABLED_TARGETS=(${unused})")
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   # Highway compiles its NEON code for the cryptographic extension; g++ gives implicit constructors the options of the command
   # line alone. Nothing uses such instructions, and a processor without them takes the plain code.
   target_compile_options(corral_options INTERFACE -march=armv8-a+crypto)
 endif()
 if(CORRAL_SANITIZE)
-  # With the sanitisers g++ 12 gives false warnings of uninitialised members in the standard library.
-  target_compile_options(corral_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-    -Wno-maybe-uninitialized)
-  target_link_options(corral_options INTERFACE -fsanitize=address,undefined)
+  # With the sanitizers g++ 12 gives false warnings of uninitialised members in the standard library.
+  target_compile_options(corral_options INTERFACE -fsanitize=${CORRAL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(corral_options INTERFACE -Wno-maybe-uninitialized)
+  else()  # clang takes ten minutes for a file of vector code with these; the address sanitizer sees most of what they see
+    target_compile_options(corral_options INTERFACE -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow)
+  endif()
+  target_link_options(corral_options INTERFACE -fsanitize=${CORRAL_SANITIZE})
+endif()
+if(CORRAL_FUZZ)
+  target_compile_options(corral_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 include(GNUInstallDirs)

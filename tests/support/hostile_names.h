@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/results/study_folder.h"
+
 namespace corral::testing {
 
 /// What a name may be that somebody else has chosen. Where one of them is run, it sets window.hacked.
@@ -22,6 +24,20 @@ inline std::vector<std::string> hostile_names() {
           "\xff\xfe\xc0\x80",
           "__proto__",
           std::string(10240, '<')};
+}
+
+/// A study in which all of them together are the name of a pair, a method, a scene and a cause.
+inline StudyFolder with_hostile_names(StudyFolder study, const std::string& pair) {
+  std::string all;
+  for (const std::string& name : hostile_names()) all += name;
+  std::string& method = study.experiments[0].methods[0];
+  for (StudyRecord& record : study.records) {
+    if (record.method == method) record.method = all;
+    if (record.pair == pair) record.pair = all;
+    record.scene = record.status.cause = all;
+  }
+  method = all;
+  return study;
 }
 
 }  // namespace corral::testing

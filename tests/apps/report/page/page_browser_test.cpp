@@ -61,15 +61,7 @@ struct Desk {
     options.most_records = 13;  // of 23: the pairs at 0.1 and the one that failed
     options.pairs_in_3d = 1;
     write_file(folder / "sampled.html", report_page(runs, results_of(runs), options));
-    std::vector<StudyFolder> hostile = runs;
-    std::string all;  // each of them at work, and all in one
-    for (const std::string& name : hostile_names()) all += name;
-    hostile[0].experiments[0].methods[0] = all;
-    for (StudyRecord& record : hostile[0].records) {
-      if (record.method == "ss") record.method = all;
-      if (record.pair == "Ball1-low") record.pair = all;
-      record.scene = record.status.cause = all;
-    }
+    const std::vector<StudyFolder> hostile = {with_hostile_names(run, "Ball1-low")};
     write_file(folder / "hostile.html", report_page(hostile, results_of(hostile), {}));
   }
 
