@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
   corral::add_dataset(app, action);
   corral::add_compare(app, action);
   corral::add_claims(app, action);
+  corral::add_reproduce(app, action);
   corral::add_draw(app, action);
   corral::add_report(app, action);
   corral::add_align(app, action);

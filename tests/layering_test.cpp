@@ -33,7 +33,7 @@ const Names kAppLibraries = {"Eigen", "CLI", "nlohmann", "oneapi", "boost"};
 /// The rooms of apps/ from the lowest to the highest: none includes one above it.
 const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "apps/pair",  "apps/align",
                                              "apps/dataset", "apps/results", "apps/advise", "apps/study", "apps/claims",
-                                             "apps/report",  "apps/scoreboard",  "apps/commands"};
+                                             "apps/reproduce", "apps/report",  "apps/scoreboard",  "apps/commands"};
 
 /// Rooms by folder, or by file; the longest that fits a file is its room.
 std::map<std::string, Room> make_rooms() {

@@ -19,8 +19,9 @@ const RowNumbers* column_of_pairs(const LevelSource& source, const Quantity& qua
 
 }  // namespace
 
-ClaimMeasure::ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const ClaimData& data, bool half_sum)
-    : book_(book), part_(part), half_sum_(half_sum) {
+ClaimMeasure::ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const ClaimData& data,
+                           const Averaging& averaging)
+    : book_(book), part_(part), averaging_(averaging) {
   for (const std::string& experiment : part.experiments) experiments_.push_back(bind(data, experiment));
   for (const std::string& experiment : part.with) with_.push_back(bind(data, experiment));
   if (reason_.empty()) require_levels();
@@ -56,13 +57,31 @@ void ClaimMeasure::bind_columns(Level& level) const {
   if (part_.of.is_of_pairs()) {
     const RowNumbers* column = column_of_pairs(*level.source, part_.of);
     level.columns = {column->size() == table.pairs.size() ? column : nullptr};
+    level.ratios = {{{level.columns, {}}}};
     return;
   }
-  const bool halves = half_sum_ && part_.of.is_measure("f1");
+  const bool halves = averaging_.half_sum && part_.of.is_measure("f1");
   for (const std::string& method : book_.methods) {
     level.columns.push_back(table.column(halves ? measure("precision") : *part_.of.measure, method));
-    if (halves) level.second.push_back(table.column(measure("recall"), method));
+    level.ratios.push_back(ratios_of(table, method));
   }
+}
+
+std::vector<ClaimMeasure::Ratio> ClaimMeasure::ratios_of(const LevelTable& table, const std::string& method) const {
+  const auto column = [&](const char* name) { return table.column(measure(name), method); };
+  const bool is_precision = part_.of.is_measure("precision"), is_recall = part_.of.is_measure("recall"),
+             is_f1 = part_.of.is_measure("f1");
+  if (averaging_.pooled && (is_precision || is_recall || is_f1)) {
+    const RowNumbers *correct = column("correct"), *selected = column("selected"), *right = column("true_matches");
+    const Ratio precision{{correct}, {selected}}, recall{{correct}, {right}};
+    if (is_f1)
+      return averaging_.half_sum ? std::vector{precision, recall}
+                                 : std::vector{Ratio{{correct, correct}, {selected, right}}};
+    return {is_precision ? precision : recall};
+  }
+  const char* const precision = averaging_.leave_out_empty ? "precision_nonempty" : "precision";
+  if (is_f1 && averaging_.half_sum) return {{{column(precision)}, {}}, {{column("recall")}, {}}};
+  return {{{is_precision ? column(precision) : table.column(*part_.of.measure, method)}, {}}};
 }
 
 bool ClaimMeasure::is_usable(const Level& level) const {
@@ -84,8 +103,7 @@ void ClaimMeasure::require_levels() {
                          part_.take == Take::LargestFall || part_.take == Take::LeastStep;
   const std::size_t needed = is_trend ? 3 : is_series ? 2 : 1;
   if (levels.size() < needed)
-    reason_ =
-        name + " has " + std::to_string(levels.size()) + " usable levels, " + std::to_string(needed) + " needed";
+    reason_ = name + " has " + std::to_string(levels.size()) + " usable levels, " + std::to_string(needed) + " needed";
   if (!with_.empty() || (part_.take != Take::Rise && part_.take != Take::RelativeDrop)) return;
   for (const Range& range : {part_.first, part_.last})
     if (range && within(levels, range, false).empty())

@@ -27,6 +27,15 @@ Numbers relative_loss(const Numbers& before, const Numbers& after) {
   return result;
 }
 
+/// The sum of columns over the rows that are judged: those where `judged` has a number.
+double sum_of(const std::vector<const RowNumbers*>& columns, const std::vector<int>& rows, const RowNumbers& judged) {
+  double sum = 0;
+  for (const int row : rows)
+    for (const RowNumbers* column : columns)
+      if (!std::isnan(judged[static_cast<std::size_t>(row)])) sum += (*column)[static_cast<std::size_t>(row)];
+  return sum;
+}
+
 /// Least-squares slope of y over x.
 double slope(const Numbers& x, const Numbers& y) {
   const double x_mean = mean_of(x), y_mean = mean_of(y);
@@ -83,8 +92,14 @@ Numbers ClaimMeasure::of_level(const Level& level, const Draws& draws) const {
   const std::vector<int>& rows = draws[level.source->slot];
   Numbers numbers;
   for (std::size_t i = 0; i < level.columns.size(); ++i) {
-    double number = level.columns[i] ? mean_of(*level.columns[i], rows) : kAbsent;
-    if (!level.second.empty() && level.columns[i]) number = (number + mean_of(*level.second[i], rows)) / 2;
+    double number = level.columns[i] ? 0 : kAbsent;
+    for (const Ratio& ratio : level.ratios[i]) {
+      if (!level.columns[i]) break;
+      const RowNumbers& first = *ratio.above.front();
+      number += ratio.below.empty() ? mean_of(first, rows)
+                                    : sum_of(ratio.above, rows, first) / sum_of(ratio.below, rows, first);
+    }
+    number /= static_cast<double>(level.ratios[i].size());
     numbers.push_back(part_.of.is_time() ? std::log(number) : number);
   }
   return part_.lead ? leads_of(numbers) : numbers;

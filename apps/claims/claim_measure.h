@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/claims/averaging.h"
 #include "apps/claims/claim_test.h"
 #include "apps/results/level_table.h"
 
@@ -26,8 +27,7 @@ class ClaimMeasure {
  public:
   using Numbers = std::vector<double>;
 
-  /// `half_sum`: (precision + recall) / 2 stands for F1.
-  ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const ClaimData& data, bool half_sum);
+  ClaimMeasure(const ClaimBook& book, const ClaimPart& part, const ClaimData& data, const Averaging& averaging);
 
   const std::string& reason() const { return reason_; }  ///< why there are none; empty if there are
   Scale scale() const;
@@ -36,16 +36,22 @@ class ClaimMeasure {
   std::vector<Numbers> numbers(const Draws& draws) const;
 
  private:
+  /// Columns whose sums are divided by each other; without the second ones it is the mean of the one first.
+  struct Ratio {
+    std::vector<const RowNumbers*> above, below;
+  };
   struct Level {
     const LevelSource* source;
-    std::vector<const RowNumbers*> columns, second;  // one for each method or for all; null if it is not there
-    std::vector<int> partners;                       // of Take::LeastStep: the pair's row in the next level, or -1
+    std::vector<const RowNumbers*> columns;  // one for each method or for all; null if it is not there
+    std::vector<std::vector<Ratio>> ratios;  // of each of them; their mean is its number at the level
+    std::vector<int> partners;               // of Take::LeastStep: the pair's row in the next level, or -1
   };
   using Levels = std::vector<Level>;
   using Range = std::optional<std::pair<double, double>>;
 
   Levels bind(const ClaimData& data, const std::string& experiment);
   void bind_columns(Level& level) const;
+  std::vector<Ratio> ratios_of(const LevelTable& table, const std::string& method) const;
   bool is_usable(const Level& level) const;
   void bind_partners();
   void require_levels();
@@ -63,7 +69,7 @@ class ClaimMeasure {
 
   const ClaimBook& book_;
   const ClaimPart& part_;
-  bool half_sum_;
+  Averaging averaging_;
   std::string reason_;
   std::vector<Levels> experiments_;  // as in the part
   std::vector<Levels> with_;

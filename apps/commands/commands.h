@@ -45,6 +45,7 @@ void add_dataset(CLI::App& app, Action& action);
 void add_dataset_make(CLI::App& dataset, Action& action);
 void add_dataset_import(CLI::App& dataset, Action& action);
 void add_claims(CLI::App& app, Action& action);
+void add_reproduce(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_draw(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);

@@ -19,6 +19,7 @@
 #include "apps/pair/truth_fit.h"
 #include "apps/results/study_folder.h"
 #include "apps/runtime/build_info.h"
+#include "apps/study/score_unit.h"
 #include "io/disk/open_file.h"
 #include "io/matches/matches_file.h"
 #include "io/pose/transform_file.h"
@@ -61,6 +62,12 @@ FeatureCache feature_cache(const UnitWork& work, const std::string& file) {
     work.store.put(key, features.descriptors);
     return features;
   };
+}
+
+std::string matches_key(const UnitWork& work) {
+  const DatasetPair& pair = work.unit.pair;
+  return key_of({"matches", hash_of(work.inputs, pair.source), hash_of(work.inputs, pair.target),
+                 matching_text(work.unit.matching)});
 }
 
 /// Causes are in cells of a table.
@@ -295,22 +302,23 @@ std::string hash_of(const InputHashes& inputs, const std::string& path) {
 
 std::string unit_key(const WorkUnit& unit) { return key_of({"unit", unit_text(unit)}); }
 
+std::optional<StoredMatches> stored_unit_matches(const UnitWork& work) { return work.store.matches(matches_key(work)); }
+
 StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target) {
   const WorkUnit& unit = work.unit;
-  const std::string key = key_of({"matches", hash_of(work.inputs, unit.pair.source),
-                                  hash_of(work.inputs, unit.pair.target), matching_text(unit.matching)});
-  if (auto found = work.store.matches(key)) return std::move(*found);
+  if (auto found = stored_unit_matches(work)) return std::move(*found);
   MatchHooks hooks;
   if (unit.shares_source) hooks.source = feature_cache(work, unit.pair.source);
   if (unit.shares_target) hooks.target = feature_cache(work, unit.pair.target);
   MatchedPair pair = match_pair(source, target, unit.matching, hooks);
   const StoredMatches made{std::move(pair.matches), pair.report.source.keypoints};
-  work.store.put(key, made);
+  work.store.put(matches_key(work), made);
   return made;
 }
 
 UnitResult evaluate_unit(const UnitWork& work, std::vector<FileContent>& files) {
   try {
+    if (work.unit.extent != StudyExtent::Poses) return score_unit(work, files);
     PairStudy study(work);
     UnitResult result = study.evaluate();
     study.add_files(files);

@@ -57,7 +57,9 @@ struct UnitWork {
   const ContentStore& store;
 };
 
-/// The table of a unit, read from the store or computed and stored. Throws IoError or InvalidInput.
+/// The table of a unit from the store, if it is there.
+std::optional<StoredMatches> stored_unit_matches(const UnitWork& work);
+/// The same, computed and stored where it is not. Throws IoError or InvalidInput.
 StoredMatches unit_matches(const UnitWork& work, const Mesh& source, const Mesh& target);
 
 /// Matches, groups, scores and refines. Failures are in the result, except for lack of memory (std::bad_alloc). `files`

@@ -44,6 +44,13 @@ enum class Sweep {
 /// Whether the value of a pair is known only when it has been matched.
 constexpr bool is_measured(Sweep sweep) { return sweep == Sweep::Matches || sweep == Sweep::Ratio; }
 
+/// How far the work on a selection goes. Each includes those behind it.
+enum class StudyExtent {
+  Poses,       ///< poses are fitted to it, refined and judged on the surfaces
+  Selections,  ///< it is kept in a file
+  Scores,      ///< its correct matches are counted
+};
+
 /// One experiment: a file such as paper/experiments/noise.toml, whose keys paper/README.md explains.
 struct Experiment {
   ExperimentInfo info;
@@ -61,6 +68,7 @@ struct Experiment {
   bool all_rows = false;               ///< also refine over all matches
   bool confidence = false;             ///< also the probability that each pose is right (rate_poses)
   bool by_surface = false;             ///< surfaces choose among the poses of a grouper (SurfaceChoice)
+  StudyExtent extent = StudyExtent::Poses;  ///< how far the work on selections goes
   int tables = 1;                      ///< of Sweep::TableSize: pairs whose tables are timed
   std::vector<ForeignMethod> foreign;  ///< behind the groupers in `info.methods`
 };

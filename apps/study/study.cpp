@@ -140,8 +140,12 @@ FolderLock::FolderLock(const std::string& folder, const Shard& shard) {
 
 FolderLock::~FolderLock() { ::close(descriptor_); }
 
-StudyOutcome run_study(const WorkList& list, const StudyCall& call, const StudySettings& settings,
-                       const StudyObserver& observer) {
+namespace {
+
+/// Evaluates what is left, and hands over all that is finished before the folder is released.
+void run_study(const WorkList& list, const StudyCall& call, const StudySettings& settings,
+               const StudyObserver& observer,
+               const std::function<void(FinishedUnits&, const std::vector<std::size_t>& units)>& finish) {
   std::atomic<Runner*> running = nullptr;
   const StopSignals signals([&] { observer.stopped(running ? running.load()->stop() : StudyProgress()); });
   make_folder(settings.run);
@@ -166,8 +170,27 @@ StudyOutcome run_study(const WorkList& list, const StudyCall& call, const StudyS
                 finished);
   running = &runner;
   runner.run(units, settings.jobs, observer);
-  return settings.shard.is_whole() ? finish_study(list, finished, settings.run, settings.command_line)
-                                   : outcome_of(list, finished, units);
+  finish(finished, units);
+}
+
+}  // namespace
+
+StudyOutcome run_study(const WorkList& list, const StudyCall& call, const StudySettings& settings,
+                       const StudyObserver& observer) {
+  StudyOutcome outcome;
+  run_study(list, call, settings, observer, [&](FinishedUnits& finished, const std::vector<std::size_t>& units) {
+    outcome = settings.shard.is_whole() ? finish_study(list, finished, settings.run, settings.command_line)
+                                        : outcome_of(list, finished, units);
+  });
+  return outcome;
+}
+
+std::vector<UnitResult> run_units(const WorkList& list, const StudyCall& call, const StudySettings& settings,
+                                  const StudyObserver& observer) {
+  std::vector<UnitResult> results;
+  run_study(list, call, settings, observer,
+            [&](FinishedUnits& finished, const std::vector<std::size_t>&) { results = finished.results(); });
+  return results;
 }
 
 }  // namespace corral

@@ -8,6 +8,7 @@
 
 #include "apps/results/losses.h"
 #include "apps/results/summary.h"
+#include "apps/study/evaluate_unit.h"
 #include "apps/study/shard.h"
 #include "apps/study/study_call.h"
 
@@ -48,6 +49,10 @@ struct StudyOutcome {
 /// Throws    IoError: the folder cannot be written, holds another study, or is in use by another call.
 StudyOutcome run_study(const WorkList& list, const StudyCall& call, const StudySettings& settings,
                        const StudyObserver& observer);
+
+/// The results of all units of a study, evaluated, kept and continued as run_study does, but without its tables.
+std::vector<UnitResult> run_units(const WorkList& list, const StudyCall& call, const StudySettings& settings,
+                                  const StudyObserver& observer);
 
 struct MergeOutcome {
   StudyOutcome study;

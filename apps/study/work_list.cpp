@@ -213,8 +213,10 @@ class Collector {
     if (at == unit.thresholds_pr.end() || *at != sample.threshold_pr)
       unit.thresholds_pr.insert(at, sample.threshold_pr);
     const StudyLevel& level = experiment.info.levels[static_cast<std::size_t>(std::max(sample.level, 0))];
-    sample.selection =
-        "selections/" + unit.dataset + "/" + setting_label(experiment, unit, level) + "/" + unit.pair.name + ".csv";
+    unit.extent = std::min(unit.extent, experiment.extent);
+    if (experiment.extent != StudyExtent::Scores)
+      sample.selection =
+          "selections/" + unit.dataset + "/" + setting_label(experiment, unit, level) + "/" + unit.pair.name + ".csv";
     for (const std::string& method : experiment.info.methods)
       if (look_up(methods(), method))
         for (const GroupingTask& task : tasks_of(experiment, method, level, unit.pair.name))
@@ -250,6 +252,7 @@ class Collector {
     const int number = static_cast<int>(found - unit.tasks.begin());
     if (found == unit.tasks.end()) unit.tasks.push_back(task);
     sample.tasks.push_back(number);
+    if (sample.selection.empty()) return;
     std::vector<int>& shown = unit.selections[sample.selection];
     if (task.repeat == 0 && std::find(shown.begin(), shown.end(), number) == shown.end()) shown.push_back(number);
   }
@@ -305,6 +308,7 @@ std::string unit_text(const WorkUnit& unit) {
                        {"all_rows", unit.all_rows},
                        {"by_surface", unit.by_surface},
                        {"confidence", unit.confidence},
+                       {"extent", static_cast<int>(unit.extent)},
                        {"selections", selections}});
 }
 

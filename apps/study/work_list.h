@@ -19,7 +19,7 @@ struct GroupingTask {
   std::string method;
   OptionOverrides options;
   int repeat = 0;
-  std::shared_ptr<const ForeignAnswer> answer = {};      ///< of another program, in files; null for a grouper
+  std::shared_ptr<const ForeignAnswer> answer = {};     ///< of another program, in files; null for a grouper
   std::shared_ptr<const ExternalMethod> external = {};  ///< another program, to be called; null for a grouper
 
   /// The answers of another program, the program itself, or the library of a plug-in; none of a grouper.
@@ -44,6 +44,7 @@ struct WorkUnit {
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
   bool all_rows = false, by_surface = false, confidence = false;  ///< as of Experiment
   std::string scene = {};                              ///< scene_of the pair
+  StudyExtent extent = StudyExtent::Scores;            ///< the furthest of its experiments
 
   /// Those of the pair, then those of the answers of other programs and of the programs themselves.
   std::vector<std::string> files() const;
@@ -55,7 +56,7 @@ struct StudySample {
   int level = -1;               ///< -1: determined later by the number of matches
   std::optional<double> value;  ///< of the swept attribute, if it is known beforehand
   double threshold_pr = 4;
-  std::string selection;
+  std::string selection;   ///< file in the study folder; empty where none is kept
   std::vector<int> tasks;  ///< of the unit: the methods in order, and of each its repeats
 };
 

@@ -7,6 +7,7 @@
 
 #include <map>
 
+#include "apps/claims/claim_outcomes.h"
 #include "apps/claims/claim_report.h"
 #include "apps/runtime/workers.h"
 #include "kernel/error.h"
@@ -261,6 +262,62 @@ TEST(Claims, PutRunsTogether) {
                     overlap = run_with("overlap", {bin(30, 40)}, scores);
   EXPECT_EQ(judge({clutter, overlap}).at("C68").verdict, Verdict::Holds);
   EXPECT_THROW(judge({clutter, clutter}), IoError);
+}
+
+TEST(Claims, CanCountTheMatchesOfAllPairsTogether) {
+  // One large pair decides: 900 of 1000 matches of SS are correct there, 1 of 10 in the five others; NNSR keeps half of each.
+  StudyFolder run = run_with("noise", {step(0.1)}, [](auto&, double) { return Scores{0.5, 0.5}; });
+  const auto set = [](StudyRecord& record, int selected, int correct, int right) {
+    record.selected = selected, record.correct = correct, record.true_matches = right;
+    record.precision = selected > 0 ? std::optional<double>(1.0 * correct / selected) : std::nullopt;
+    record.recall = 1.0 * correct / right;
+    record.f1 = 2.0 * correct / (selected + right);
+  };
+  const std::string large = run.records.front().pair;
+  for (StudyRecord& record : run.records) {
+    const bool is_large = record.pair == large;
+    record.true_matches = is_large ? 1000 : 10;
+    if (record.method == "ss") set(record, is_large ? 1000 : 10, is_large ? 900 : 1, is_large ? 1000 : 10);
+    if (record.method == "nnsr") set(record, is_large ? 1000 : 0, is_large ? 500 : 0, is_large ? 1000 : 10);
+  }
+  ClaimBook book = parse_claims("mine.toml", R"(
+methods = ["ss", "nnsr"]
+tau = 0.01
+time_tau = 0.05
+least_pairs = 5
+slips = []
+[[claim]]
+id = "P"
+text = "P"
+parts = [{ experiment = "noise", of = "precision", take = "mean", is = ["ss > 0"] }]
+[[claim]]
+id = "R"
+text = "R"
+parts = [{ experiment = "noise", of = "recall", take = "mean", is = ["ss > 0"] }]
+[[claim]]
+id = "F"
+text = "F"
+parts = [{ experiment = "noise", of = "f1", take = "mean", is = ["ss > 0"] }]
+[[claim]]
+id = "N"
+text = "N"
+parts = [{ experiment = "noise", of = "precision", take = "mean", is = ["nnsr > 0"] }]
+)");
+  const std::vector<ExperimentTable> tables = experiment_tables(run);
+  ClaimStudy study;
+  study.add(claim_table(book, run, tables.front()));
+  const auto margins = [&](const Averaging& averaging) {
+    std::vector<double> values;
+    for (const ClaimOutcome& outcome : ClaimOutcomes(book, study, averaging).outcomes())
+      values.push_back(outcome.margin);
+    return values;
+  };
+  using ::testing::DoubleNear;
+  const auto near = [](double value) { return DoubleNear(value, 1e-12); };
+  const double mean = (0.9 + 5 * 0.1) / 6, pooled = 905 / 1050.0;
+  EXPECT_THAT(margins({}), ElementsAre(near(mean), near(mean), near(mean), near(0.5 / 6)));
+  EXPECT_THAT(margins({false, true, false}), ElementsAre(near(pooled), near(pooled), near(pooled), near(0.5)));
+  EXPECT_THAT(margins({false, false, true}), ElementsAre(near(mean), near(mean), near(mean), near(0.5)));
 }
 
 }  // namespace
