@@ -20,7 +20,7 @@ struct PointSpacing {
 };
 
 /// Point resolution pr of a surface in mesh units: the mean distance of a vertex to its nearest other vertex. Exact
-/// duplicates of a vertex count once. This is not the mean edge length, which is about 1.5 pr.
+/// duplicates of a vertex count once. It is not the mean edge length (about 1.5 pr), and infinite where distances overflow.
 ///
 /// Source    [yang2017evaluation], and the authors' program (k = 2 nearest neighbours, averaged).
 /// Cost      O(V) time where vertices lie evenly on a surface. Any number of threads gives the same bits.
