@@ -63,8 +63,9 @@ std::string class_name(StatementClass of) {
   }
 }
 
-Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& book, const TableSource& tables) {
-  CombinationJudge judge(points, book, tables);
+Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& book, const TableSource& tables,
+                       const ParallelFor& parallel) {
+  CombinationJudge judge(points, book, tables, parallel);
   const auto judged = [&](const Combination& combination) {
     return JudgedCombination{judge.score(combination, Half::All), judge.score(combination, Half::Chosen),
                              judge.score(combination, Half::HeldOut)};
@@ -83,7 +84,9 @@ Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& bo
   made.steps = search_combinations(judge);
   made.text = judged(text);
   made.found = judged(made.steps.back().score.combination);
-  for (const CombinationScore& score : judge.seen(Half::Chosen)) judge.score(score.combination, Half::All);
+  std::vector<Combination> seen;
+  for (const CombinationScore& score : judge.seen(Half::Chosen)) seen.push_back(score.combination);
+  judge.score_all(seen, Half::All);
   for (std::size_t claim = 0; claim < made.claims.size(); ++claim) made.classes.push_back(class_of(made.alone, claim));
   for (std::size_t point = 0; point < made.points.size(); ++point) made.decides.push_back(decided_by(point, made));
   find_bounds(judge.seen(Half::All), made);

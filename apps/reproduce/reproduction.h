@@ -39,6 +39,7 @@ struct Reproduction {
 };
 
 /// Judges the readings alone and searches their combinations.
-Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& book, const TableSource& tables);
+Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& book, const TableSource& tables,
+                       const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

@@ -90,15 +90,24 @@ class Search {
 
   std::vector<Combination> doubles(const CombinationScore& from) const {
     std::vector<Combination> all;
-    for (const Combination& first : singles(from))
+    for (const Move& first : moves(false))
       for (const Move& second : moves(false))
-        if (first[second.first] == from.combination[second.first] && first[second.first] != second.second)
-          all.push_back(with(first, second));
+        if (first.first < second.first && is_of_groupers(first) && is_of_groupers(second) &&
+            from.combination[first.first] != first.second && from.combination[second.first] != second.second)
+          all.push_back(with(with(from.combination, first), second));
     return all;
+  }
+
+  /// Whether the point is about what groupers do, not about means.
+  bool is_of_groupers(const Move& move) const {
+    const auto& readings = points_[move.first].readings;
+    return std::any_of(readings.begin(), readings.end(),
+                       [](const Reading& reading) { return !reading.options.empty(); });
   }
 
   /// The best of them that is a gain beyond the noise.
   std::optional<SearchStep> best_of(const CombinationScore& from, const std::vector<Combination>& candidates) {
+    judge_.score_all(candidates, Half::Chosen);
     std::vector<CombinationScore> better;
     for (const Combination& candidate : candidates)
       if (const CombinationScore& score = judge_.score(candidate, Half::Chosen); score.is_better_than(from))
@@ -148,12 +157,30 @@ ClaimBook CombinationJudge::book_for(Half half) const {
 }
 
 const CombinationScore& CombinationJudge::score(const Combination& combination, Half half) {
-  const auto [place, is_new] = scores_.try_emplace({half, combination});
-  if (!is_new) return place->second;
+  score_all({combination}, half);
+  return scores_.at({half, combination});
+}
+
+void CombinationJudge::score_all(const std::vector<Combination>& combinations, Half half) {
+  std::vector<Combination> left;
+  for (const Combination& combination : combinations)
+    if (!scores_.count({half, combination}) && std::find(left.begin(), left.end(), combination) == left.end())
+      left.push_back(combination);
+  if (left.empty()) return;
+  std::vector<CombinationScore> scores(left.size());
+  scores.front() = judged(left.front(), half);  // the source may have to run what is missing
+  parallel_(static_cast<int>(left.size()) - 1, [&](int i) {
+    const auto place = static_cast<std::size_t>(i) + 1;
+    scores[place] = judged(left[place], half);
+  });
+  for (std::size_t i = 0; i < left.size(); ++i) scores_.emplace(Key{half, left[i]}, std::move(scores[i]));
+}
+
+CombinationScore CombinationJudge::judged(const Combination& combination, Half half) const {
   const ClaimBook book = book_for(half);
   const JudgedTables tables = tables_(combination, half);
   const ClaimStudy study = study_of(tables);
-  CombinationScore& score = place->second;
+  CombinationScore score;
   score.combination = combination;
   score.outcomes = ClaimOutcomes(book, study, settings_of(points(), combination).averaging).outcomes();
   for (const ClaimOutcome& outcome : score.outcomes) {
@@ -170,7 +197,9 @@ const std::vector<int>& CombinationJudge::resampled(const Combination& combinati
   const JudgedTables tables = tables_(combination, half);
   const ClaimStudy study = study_of(tables);
   const ClaimOutcomes outcomes(book, study, settings_of(points(), combination).averaging);
-  for (int repeat = 0; repeat < kStepResamples; ++repeat) counts.push_back(count_holding(outcomes.resampled(repeat)));
+  counts.resize(kStepResamples);
+  parallel_(kStepResamples,
+            [&](int repeat) { counts[static_cast<std::size_t>(repeat)] = count_holding(outcomes.resampled(repeat)); });
   return counts;
 }
 

@@ -10,6 +10,7 @@
 #include "apps/runtime/child_program.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
+#include "apps/runtime/workers.h"
 #include "io/disk/file.h"
 
 namespace corral {
@@ -57,8 +58,9 @@ int run(Settings settings) {
     current = study;
   };
   ReadingTables tables(points, book, settings.reproduce, progress);
-  const Reproduction made =
-      reproduce(points, book, [&](const Combination& combination, Half half) { return tables.of(combination, half); });
+  const Reproduction made = reproduce(
+      points, book, [&](const Combination& combination, Half half) { return tables.of(combination, half); },
+      workers(settings.reproduce.jobs));
   const std::filesystem::path folder = settings.reproduce.folder;
   const Json json = reproduction_json(made);
   write_files({{(folder / "matrix.csv").string(), matrix_csv(made)},

@@ -10,6 +10,7 @@
 #include "apps/claims/claim_outcomes.h"
 #include "apps/claims/claim_report.h"
 #include "apps/runtime/workers.h"
+#include "apps/study/specification.h"
 #include "kernel/error.h"
 #include "kernel/random.h"
 #include "tests/io/scratch.h"
@@ -53,6 +54,15 @@ TEST(Claims, AllAreRead) {
   EXPECT_EQ(book.tau, 0.01);
   EXPECT_EQ(book.least_pairs, 5);
   EXPECT_EQ(book.methods, testing::all_methods());
+}
+
+TEST(Claims, ThoseOfTheSuccessorNameTheNineAndTheBaseline) {
+  const ClaimBook book = read_claims(CORRAL_SOURCE_DIR "/paper/claims-2019.toml");
+  EXPECT_EQ(book.methods.size(), 10u);
+  EXPECT_EQ(book.methods.back(), "baseline");
+  for (const Claim& claim : book.claims)
+    for (const ClaimPart& part : claim.parts)
+      for (const std::string& name : part.experiments) EXPECT_NO_THROW(experiment_text(name)) << claim.id;
 }
 
 TEST(Claims, AllAreDecidedOnACompleteRun) {
