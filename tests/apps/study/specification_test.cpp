@@ -122,8 +122,13 @@ TEST(Specification, APresetGivesTheOptionsOfWhatIsInUse) {
   EXPECT_EQ(experiment.options.count("mac"), 0u) << "takes no part";
   const Experiment own = parse_experiment("x.toml", testing::replaced(tuned, "tolerance_pr = 2", "tolerance_pr = 7"));
   EXPECT_EQ(options_of(own, "gc").at("tolerance_pr"), "7") << "what the experiment says comes last";
+  const Experiment as_run =
+      parse_experiment("x.toml", testing::replaced(experiment_text("noise"), "\"paper\"", "\"as-run\""));
+  EXPECT_EQ(options_of(as_run, "si"), (OptionOverrides{{"form", "rotation"}, {"otsu", "covis"}}));
+  EXPECT_TRUE(options_of(as_run, "gc").empty());
   EXPECT_THAT(error_of(testing::replaced(tuned, "\"tuned\"", "\"tund\"")), HasSubstr("did you mean 'tuned'?"));
-  EXPECT_THAT(error_of(testing::replaced(tuned, "\"tuned\"", "\"mine\"")), HasSubstr("expected one of tuned, paper"));
+  EXPECT_THAT(error_of(testing::replaced(tuned, "\"tuned\"", "\"mine\"")),
+              HasSubstr("expected one of as-run, tuned, paper"));
 }
 
 // The files of paper/tuning are experiments, on the pairs that the experiments with tuned options leave out.
