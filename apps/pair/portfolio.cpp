@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/pair/portfolio.h"
 
-#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "apps/pair/confidence.h"
@@ -11,8 +11,16 @@
 namespace corral {
 namespace {
 
-constexpr std::size_t kRefined = 2;  ///< poses of each grouper
-constexpr int kLeastAsked = 2;       ///< one grouper agrees with itself
+/// Of proposers(), without their runners-up, by their cost. MAC and SC2-PCR take longer than these together and registered no
+/// further pair, nor did runners-up.
+const std::vector<std::string> kAsked = {"gc", "hough", "tcf", "frame-ransac", "turboreg", "ransac"};
+constexpr int kLeastAsked = 2;  ///< one grouper agrees with itself
+
+Proposer without_runners_up(const std::string& method) {
+  for (Proposer proposer : proposers())
+    if (proposer.method == method) return proposer.options.erase("keep"), proposer;
+  throw std::logic_error(method);
+}
 
 class Portfolio {
  public:
@@ -23,44 +31,34 @@ class Portfolio {
   GroupingResult run() {
     GroupingResult result;
     int asked = 0;
-    for (const Proposer& proposer : proposers()) {
-      const auto found = propose(proposer, matches_);
+    for (const std::string& method : kAsked) {
+      const auto found = propose(without_runners_up(method), matches_);
       if (!found) continue;  // it does not apply to this table
       ++asked;
-      if (found->target_from_source) add_poses(*found);
+      if (found->target_from_source) add_own(*found->target_from_source);
       if (!best_) continue;
       result.confidence = probability();
-      if (*result.confidence < options_.confidence && refine_best()) result.confidence = probability();
       if (asked >= kLeastAsked && *result.confidence >= options_.confidence) break;
     }
     result.notes = {{"groupers asked", asked}};
     if (!best_) return result;
+    if (*result.confidence < options_.confidence && refine_best()) result.confidence = probability();
     result.target_from_source = best_->target_from_source;
     result.selected = agreeing_rows(matches_, best_->target_from_source);
     return result;
   }
 
  private:
-  /// The best of its own pose and its runners-up, refined over the matches within 5 pr.
-  void add_poses(const GroupingResult& found) {
-    others_.own.push_back(*found.target_from_source);
-    std::vector<ScoredPose> starts = {{*found.target_from_source, table_score(matches_, *found.target_from_source)}};
-    for (const ScoredPose& pose : found.runner_up)
-      starts.push_back({pose.target_from_source, table_score(matches_, pose.target_from_source)});
-    std::stable_sort(starts.begin(), starts.end(),
-                     [](const ScoredPose& one, const ScoredPose& other) { return one.score > other.score; });
-    starts.resize(std::min(starts.size(), kRefined));
-    for (const ScoredPose& start : starts) {
-      const RigidTransform& pose = start.target_from_source;
-      add(refine_rigid(matches_, agreeing_rows(matches_, pose), {}, pose).target_from_source.value_or(pose));
-    }
+  /// A grouper's pose, refined over the matches within 5 pr.
+  void add_own(const RigidTransform& pose) {
+    others_.own.push_back(pose);
+    add(refine_rigid(matches_, agreeing_rows(matches_, pose), {}, pose).target_from_source.value_or(pose));
   }
 
-  /// Over all matches, where a weak pose slides to a stronger one; once for each best pose. False if that was done before.
+  /// Over all matches, where a weak pose slides to a stronger one. Whether that is better.
   bool refine_best() {
-    if (is_refined_) return false;
-    if (const auto refined = refine_over_all(matches_, best_->target_from_source).target_from_source) add(*refined);
-    return is_refined_ = true;
+    const auto refined = refine_over_all(matches_, best_->target_from_source).target_from_source;
+    return refined && add(*refined);
   }
 
   /// Whether it is the best so far; equal ones are not.
@@ -69,7 +67,6 @@ class Portfolio {
     const double score = table_score(matches_, pose);
     if (best_ && score <= best_->score) return false;
     best_ = ScoredPose{pose, score};
-    is_refined_ = false;
     return true;
   }
 
@@ -81,7 +78,6 @@ class Portfolio {
   const PortfolioOptions& options_;
   OtherPoses others_;
   std::optional<ScoredPose> best_;
-  bool is_refined_ = false;  ///< the best, over all matches
 };
 
 GroupingResult answer_of(const CorrespondenceSet& matches, const Registration& found, const ConfidenceModel& model) {

@@ -21,15 +21,14 @@ struct PortfolioOptions {
   }
 };
 
-/// Several groupers as one: those of register_pair, cheap ones first, until the best pose so far is probable enough.
+/// Several groupers as one: GC, 3DHV, TCF, one-point RANSAC, TurboReg and RANSAC in turn, until the best pose so far is probable enough.
 ///
-/// Principle  of each grouper's pose and its runners-up the two with the largest table_score are refined over the matches within 5 pr;
-///            the pose with the largest table_score so far is the best, and refined over all matches too unless it is probable
+/// Principle  each grouper's pose is refined over the matches within 5 pr; the pose with the largest table_score so far is the best, and refined over all matches in the end unless it is probable
 ///            enough; its probability is that of the model of tables (paper/confidence.toml), where a grouper that was not asked
 ///            counts as one that disagrees.
 /// Returns    the rows within 5 pr of the pose, the pose and its probability; nothing if no grouper has a pose. Notes: how many
 ///            groupers were asked.
-/// Cost       that of the groupers asked, two at least; time and memory of all eight where none is sure.
+/// Cost       that of the groupers asked, two at least, and all six where none is sure.
 GroupingResult group_by_portfolio(const CorrespondenceSet& matches, const PortfolioOptions& options = {});
 
 /// "auto" (group_by_portfolio) and "register" (register_pair on the table alone).
