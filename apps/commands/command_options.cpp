@@ -245,6 +245,14 @@ void add_pose_options(CLI::App& command, std::string& rows, std::string& select)
       "groupers that can keep poses");
 }
 
+void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins) {
+  command
+      .add_option("--plugin", plugins,
+                  "A shared library as a further grouper, which has a name of its own (grouping/plugin.h)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
 void add_external_options(CLI::App& command, ExternalSettings& settings) {
   command
       .add_option("--external", settings.methods,
@@ -252,19 +260,15 @@ void add_external_options(CLI::App& command, ExternalSettings& settings) {
                   "matches and writes the rows that it keeps, or a pose to {pose}, or both (apps/README.md)")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
-  command
-      .add_option("--plugin", settings.plugins,
-                  "A shared library as a further grouper, which has a name of its own (grouping/plugin.h)")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+  add_plugin_option(command, settings.plugins);
   command
       .add_option("--external-timeout", settings.timeout_s,
                   "Longest call of such a program in seconds: then it is killed, with all that it started")
       ->capture_default_str();
 }
 
-void load_plugins(const ExternalSettings& settings) {
-  for (const std::string& file : settings.plugins) load_plugin(file);
+void load_plugins(const std::vector<std::string>& files) {
+  for (const std::string& file : files) load_plugin(file);
 }
 
 std::vector<std::string> with_plugins(std::vector<std::string> names) {

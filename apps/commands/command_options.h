@@ -75,9 +75,10 @@ struct ExternalSettings {
 
   bool empty() const { return plugins.empty() && methods.empty(); }
 };
+void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins);
 void add_external_options(CLI::App& command, ExternalSettings& settings);
 /// Adds those of plug-ins to methods(). Throws as load_plugin.
-void load_plugins(const ExternalSettings& settings);
+void load_plugins(const std::vector<std::string>& files);
 /// These names, then those of plug-ins that are not among them.
 std::vector<std::string> with_plugins(std::vector<std::string> names);
 /// Each of them once, with half of the machine's memory.

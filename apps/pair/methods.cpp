@@ -42,6 +42,8 @@ Methods& all_methods() {
   return methods;
 }
 
+std::string whole_path(const std::string& file) { return std::filesystem::absolute(file).lexically_normal().string(); }
+
 template <class Function>
 Function function_of(void* library, const std::string& file, const char* name) {
   void* found = dlsym(library, name);
@@ -144,10 +146,15 @@ std::string plugin_file(const std::string& method) {
   return found == all_methods().files.end() ? std::string() : found->second;
 }
 
+bool is_loaded_plugin(const std::string& file) {
+  const std::vector<std::string> names = plugin_methods();
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& method) { return plugin_file(method) == whole_path(file); });
+}
+
 void load_plugin(const std::string& given) {
-  const std::string file = std::filesystem::absolute(given).lexically_normal().string();
-  for (const std::string& method : plugin_methods())
-    if (plugin_file(method) == file) return;
+  if (is_loaded_plugin(given)) return;
+  const std::string file = whole_path(given);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) throw IoError(given, "", "is not a file, expected a shared library");
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);  // never closed: its functions are in use until the end

@@ -20,6 +20,9 @@ const Grouper& find_method(const std::string& name);
 ///           name or one of its options is none, or another method has that name.
 void load_plugin(const std::string& file);
 
+/// Whether its grouper was added.
+bool is_loaded_plugin(const std::string& file);
+
 /// The names of the methods of plug-ins, in the order in which they were loaded.
 std::vector<std::string> plugin_methods();
 

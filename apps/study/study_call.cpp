@@ -30,7 +30,9 @@ StudyCall study_call(const std::vector<std::string>& experiments, const std::str
 }
 
 WorkList work_list_of(const StudyCall& call) {
-  for (const std::string& file : call.plugins) load_plugin(file);
+  for (const std::string& file : call.plugins)
+    if (!is_loaded_plugin(file))
+      throw IoError(file, "", "is a plug-in that the study was made with: give it by --plugin, if you trust it");
   std::vector<Experiment> experiments;
   for (const auto& [path, text] : call.experiments) {
     experiments.push_back(parse_experiment(path, text));

@@ -27,7 +27,8 @@ struct StudyCall {
 /// Reads the experiments (files, or names of built-in ones). Throws IoError.
 StudyCall study_call(const std::vector<std::string>& experiments, const std::string& data);
 
-/// Throws IoError (an experiment or a manifest of the data), InvalidInput (options that the experiments do not accept).
+/// Plug-ins are not loaded here: the call may come from a study of somebody else.
+/// Throws IoError (an experiment or a manifest of the data, a plug-in that is not loaded), InvalidInput (options that the experiments do not accept).
 WorkList work_list_of(const StudyCall& call);
 
 /// The same call with the absolute path of its data, as it is kept beside results; and back. Throws Json::exception.

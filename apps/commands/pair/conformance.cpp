@@ -31,7 +31,7 @@ struct Method {
 std::vector<Method> methods_of(const Settings& settings) {
   if (settings.methods.empty() && settings.external.empty())
     throw UsageError("expected names of groupers, --external or --plugin");
-  load_plugins(settings.external);
+  load_plugins(settings.external.plugins);
   std::vector<Method> methods;
   const std::vector<std::string> names =
       with_plugins(settings.methods.empty() ? std::vector<std::string>() : method_names(settings.methods));

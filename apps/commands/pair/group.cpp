@@ -141,7 +141,7 @@ int put_all(const std::vector<Grouped>& all, int matches, const Settings& settin
 int group(const Settings& settings) {
   if (settings.method.empty() && settings.external.empty())
     throw UsageError("expected --method, --external or --plugin");
-  load_plugins(settings.external);
+  load_plugins(settings.external.plugins);
   const std::vector<std::string> methods =
       with_plugins(settings.method.empty() ? std::vector<std::string>() : method_names(settings.method));
   const std::vector<ExternalMethod> externals = external_methods(settings.external);

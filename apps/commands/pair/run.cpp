@@ -23,7 +23,7 @@ void check_inputs(const RunSettings& settings) {
 }
 
 int run_pair(RunSettings settings) {
-  load_plugins(settings.external);
+  load_plugins(settings.external.plugins);
   const OptionsByName options = parse_set(settings.set);
   std::vector<std::string> in_use = settings.match.in_use();
   for (const std::string& name : with_plugins(method_names(settings.methods))) in_use.push_back(name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // corral merge: the tables of a study from its shards.
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/commands/study/study_text.h"
 #include "apps/runtime/output.h"
 
@@ -9,11 +9,12 @@ namespace {
 
 struct Settings {
   std::string study, data;
-  std::vector<std::string> parts;
+  std::vector<std::string> parts, plugins;
   bool explain = false, json = false;
 };
 
 int merge(const Settings& settings) {
+  load_plugins(settings.plugins);
   const auto [outcome, notes] = merge_study(settings.study, settings.parts, settings.data);
   for (const std::string& note : notes) say("note: " + note);
   say_study(outcome);
@@ -42,6 +43,7 @@ void add_merge(CLI::App& app, Action& action) {
       ->type_name("PART");
   command->add_option("--data", settings->data, "Where the data sets are now (default: where the shards found them)")
       ->type_name("FOLDER");
+  add_plugin_option(*command, settings->plugins);
   command->add_flag("--explain", settings->explain, "Also where pairs were lost, as of 'corral evaluate'");
   command->add_flag("--json", settings->json, "A short summary as JSON instead of the table");
   command->footer(

@@ -93,7 +93,7 @@ int write_site(const Settings& settings) {
 
 /// The one method of --method, --external or --plugin.
 SubmittedMethod method_of(const Settings& settings) {
-  load_plugins(settings.external);
+  load_plugins(settings.external.plugins);
   const std::vector<ExternalMethod> externals = external_methods(settings.external);
   std::vector<std::string> names = with_plugins({});
   if (!settings.method.empty()) names = {settings.method};

@@ -27,7 +27,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
 }
 
 StudyCall study_call(const StudyOptions& options) {
-  load_plugins(options.external);
+  load_plugins(options.external.plugins);
   StudyCall call = study_call(options.experiments, options.data);
   if (!options.methods.empty()) call.methods = {options.methods, read_file(options.methods)};
   call.options = parse_set(options.set);

@@ -58,6 +58,7 @@ void put_calls(const Settings& settings, SlurmJobs& jobs) {
     if (fs::exists(experiment)) experiment = absolute(experiment);
   options.data = absolute(options.data);
   if (!options.methods.empty()) options.methods = absolute(options.methods);
+  for (std::string& file : options.external.plugins) file = absolute(file);
   jobs.evaluate = {program, "evaluate"};
   const auto add = [&](const std::vector<std::string>& words) {
     jobs.evaluate.insert(jobs.evaluate.end(), words.begin(), words.end());
@@ -67,6 +68,7 @@ void put_calls(const Settings& settings, SlurmJobs& jobs) {
   if (!settings.cache.empty()) add({"--cache", absolute(settings.cache)});
   if (settings.cache_limit > 0) add({"--cache-limit", std::to_string(settings.cache_limit)});
   jobs.merge = {program, "merge", study};
+  for (const std::string& file : options.external.plugins) jobs.merge.insert(jobs.merge.end(), {"--plugin", file});
   jobs.folder = study + "/slurm";
 }
 

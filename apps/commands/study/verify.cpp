@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral verify: whether the inputs of a study still give its records.
 #include "apps/study/verify.h"
-#include "apps/commands/commands.h"
+#include "apps/commands/command_options.h"
 #include "apps/commands/study/study_text.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
@@ -11,11 +11,13 @@ namespace {
 
 struct Settings {
   VerifySettings verify;
+  std::vector<std::string> plugins;
   bool all = false, json = false;
 };
 
 int verify(Settings settings) {
   if (settings.all) settings.verify.sample.reset();
+  load_plugins(settings.plugins);
   std::optional<Progress> progress;
   const VerifyOutcome outcome = verify_study(settings.verify, [&](const StudyProgress& now) {
     const bool is_first = !progress;
@@ -59,6 +61,7 @@ void add_verify(CLI::App& app, Action& action) {
       ->type_name("N");
   command->add_flag("--programs", settings->verify.programs,
                     "Call the programs that the study was made with (--external of 'corral evaluate')");
+  add_plugin_option(*command, settings->plugins);
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
       "Pairs are read, matched, grouped and scored again, with nothing from the cache of the study. Every cell of "

@@ -49,6 +49,12 @@ TEST(Plugins, TakePartInStudiesAndTheirFileCounts) {
   const auto outcome = place.corral("evaluate mine.toml --data set -o study --plugin " + kOdd);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(place.text("study/records.csv"), HasSubstr(",odd,"));
+  for (const char* command : {"merge study", "verify study --all"}) {
+    const auto refused = place.corral(command);
+    EXPECT_EQ(refused.status, 3) << command << ": a library that a study names is not loaded for that";
+    EXPECT_THAT(refused.err, HasSubstr("give it by --plugin, if you trust it"));
+    EXPECT_EQ(place.corral(command + (" --plugin " + kOdd)).status, 0) << command;
+  }
 }
 
 TEST(Plugins, WhatTheyDoWrongIsTheirFailureAlone) {
