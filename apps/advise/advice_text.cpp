@@ -96,7 +96,7 @@ std::string advice_text(const Advice& advice, const AdviceOptions& options) {
           " ms on the median pair\n";
   const std::vector<std::string> ties = advice.ties();
   if (!ties.empty()) {
-    text += "these pairs do not tell it from";
+    text += "not distinguishable from it on these pairs:";
     for (std::size_t i = 0; i < ties.size(); ++i) text += (i == 0 ? " " : ", ") + ties[i];
     text += "\n";
   }

@@ -11,7 +11,7 @@ const char* corral_plugin_options(void) { return "most=0.8 largest ratio of the 
 const char* corral_plugin_group(const corral_table* table, const char* options, corral_answer* answer) {
   double most = 0;
   if (sscanf(options, "most=%lf", &most) != 1) return "option most: expected a number";
-  if (!table->feature_distance || !table->second_feature_distance) return "it needs the distances of the features";
+  if (!table->feature_distance || !table->second_feature_distance) return "it needs the feature distances";
   for (int i = 0; i < table->rows; ++i)
     answer->selected[i] = table->feature_distance[i] <= most * table->second_feature_distance[i];
   return NULL;

@@ -43,6 +43,7 @@ class Estimator {
     const std::uint64_t described = is_table ? 0 : keypoints_of(unit, target);
     std::uint64_t nanoseconds = 6'000'000 + 1'800 * vertices + 24 * rows * described;
     for (const GroupingTask& task : unit.tasks) nanoseconds += call_nanoseconds(task.method, rows);
+    if (unit.confidence) nanoseconds += call_nanoseconds("register", rows);
     if (unit.dense) nanoseconds += calls * 6'000 * vertices;
     std::uint64_t memory = 0;
     for (const GroupingTask& task : unit.tasks) memory = std::max(memory, memory_of(task, static_cast<int>(rows)));
@@ -74,6 +75,8 @@ class Estimator {
 }  // namespace
 
 std::uint64_t call_nanoseconds(const std::string& method, std::uint64_t matches) {
+  if (method == "register") return 1'000'000 * matches;
+  if (method == "auto") return 15'000 * matches;
   const std::uint64_t tenths = method == "gtm" ? 330 : method == "st" ? 40 : method == "si" ? 13 : 1;
   return 1'100 * matches + tenths * matches * matches / 10;
 }

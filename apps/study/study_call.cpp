@@ -47,7 +47,7 @@ WorkList work_list_of(const StudyCall& call) {
     override_options(experiment, call.options);
     if (call.methods) add_methods(experiment, parse_methods(call.methods->path, call.methods->text));
     add_methods(experiment, foreign_methods(call.externals));
-    if (experiment.info.methods.empty()) throw IoError(path, "groupers", "is empty, expected one grouper at least");
+    if (experiment.info.methods.empty()) throw IoError(path, "groupers", "is empty, expected at least one grouper");
   }
   return make_work_list(std::move(experiments), call.data);
 }

@@ -80,7 +80,7 @@ int run(Settings settings) {
 
 void add_reproduce(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
-      "reproduce", "Which findings of the paper depend on how one reads what it leaves open, and on which point");
+      "reproduce", "Which findings of the paper depend on its open points, and which point decides most");
   auto settings = std::make_shared<Settings>();
   command
       ->add_option("experiments", settings->reproduce.experiments,

@@ -104,7 +104,7 @@ SubmittedMethod method_of(const Settings& settings) {
     require_in_use(options, names);
     method.facts.name = names.front();
     method.group = configure_grouper(names.front(), options).group;
-    if (look_up(groupers(), method.facts.name)) method.facts.name += "-packed";  // a name of Corral's own is taken
+    if (plugin_file(method.facts.name).empty()) method.facts.name += "-packed";  // a name of Corral's own is taken
   } else {
     method.facts.name = externals.front().name;
     method.group = [external = externals.front()](const CorrespondenceSet& matches) { return call_external(external, matches).found; };
@@ -179,7 +179,7 @@ void add_scoreboard(CLI::App& app, Action& action) {
   const auto does = [&](CLI::App* command, int (*act)(const Settings&)) {
     command->callback([settings, act, &action] { action = [settings, act] { return act(*settings); }; });
   };
-  auto* write = scoreboard->add_subcommand("write", "A site of static pages from studies");
+  auto* write = scoreboard->add_subcommand("write", "A static site from studies");
   write->add_option("studies", settings->folders, "Studies of corral evaluate and corral scoreboard add")->type_name("FOLDER")->required();
   add_output(*write, *settings, "Folder of the site: open its index.html, or serve it");
   write->add_flag("--no-checks", settings->no_checks, "Without putting the contract of groupers to each of ours, which takes a minute");
@@ -188,7 +188,7 @@ void add_scoreboard(CLI::App& app, Action& action) {
   auto* packing = scoreboard->add_subcommand("pack", "A method's answers to the tables of a data set, to be sent in");
   add_data(*packing, *settings);
   add_output(*packing, *settings, "Folder of the submission");
-  packing->add_option("-m,--method", settings->method, "One of ours");
+  packing->add_option("-m,--method", settings->method, "One of ours, which is then named NAME-packed");
   add_external_options(*packing, settings->external);
   add_set_option(*packing, settings->set);
   packing->add_option("--title", settings->title, "Its name for people");

@@ -23,7 +23,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_flag("--dense", options.dense, "Also refine on the whole surfaces, in columns of their own");
   add_pose_options(command, options.rows, options.select);
   command.add_flag("--confidence", options.confidence,
-                   "Also how probable it is that each pose is right, without the truth (paper/confidence.toml)");
+                   "Also the probability that each pose is right, estimated without the truth (paper/confidence.toml)");
 }
 
 StudyCall study_call(const StudyOptions& options) {
