@@ -26,7 +26,7 @@ class NearestSweep {
  public:
   explicit NearestSweep(const PointGrid& grid) : grid_(grid), from_faces_(grid.from_faces()) {}
 
-  /// make_worker() is called for every block of slots; what it returns may hold scratch.
+  /// make_worker() is called for every block of slots; what it returns may hold scratch, and takes many slots.
   template <class MakeWorker>
   std::vector<int> run(const ParallelFor& parallel, const MakeWorker& make_worker) const {
     const int blocks = (grid_.cells() + kCellsPerBlock - 1) / kCellsPerBlock;
@@ -43,15 +43,20 @@ class NearestSweep {
     for (const auto& slots : left) all.insert(all.end(), slots.begin(), slots.end());
     if (static_cast<double>(all.size()) * grid_.size() > kMostWork) return all;
     const SlotRange everything{0, grid_.size()};
-    parallel(static_cast<int>(all.size()), [&](int i) HWY_ATTR {
-      make_worker().attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, true,
-                            std::numeric_limits<double>::infinity());
+    const int rest = static_cast<int>(all.size());
+    parallel((rest + kSlotsPerWorker - 1) / kSlotsPerWorker, [&](int block) HWY_ATTR {
+      auto worker = make_worker();
+      const int first = block * kSlotsPerWorker;
+      for (int i = first; i < std::min(rest, first + kSlotsPerWorker); ++i)
+        worker.attempt(all[static_cast<std::size_t>(i)], &everything, &everything + 1, i == first,
+                       std::numeric_limits<double>::infinity());
     });
     return {};
   }
 
  private:
   static constexpr int kCellsPerBlock = 256;
+  static constexpr int kSlotsPerWorker = 64;
   static constexpr int kCrowd = 4000;       // slots around a cell beyond which a tree is faster
   static constexpr double kMostWork = 3e7;  // distances, some hundredths of a second
 
