@@ -13,6 +13,7 @@ RigidCost rigid_cost(const MatchedPoints& pairs, const RigidTransform& pose, con
     const Eigen::Vector3d error = arm + pose.translation - pairs.target.row(row).transpose();
     const LossValue at = evaluate_loss(loss, error.squaredNorm());
     sums.cost += at.cost;
+    if (at.weight == 0) continue;  // adds nothing below
     weights += at.weight;
     pull += at.weight * error;
     torque += at.weight * arm.cross(error);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace corral {
 namespace {
@@ -18,7 +19,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// All pairs as seven residuals f of a pose (quaternion; shift in extents) with |f|^2 = E, J^T f its gradient and J^T J its
 /// normal matrix N = L L^T: J = L^T and f = (L^-1 gradient, the rest). The rest exists since rho(s) >= s rho'(s), concave
-/// as rho is. Ceres then evaluates the true robust cost in one pass over the pairs.
+/// as rho is. Ceres then evaluates the true robust cost in one pass over the pairs; it asks for a pose that it accepts twice
+/// in a row, of which the second time is answered from memory.
 class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
  public:
   RigidCostFunction(const MatchedPoints& pairs, const ScaledLoss& loss, double extent)
@@ -27,7 +29,7 @@ class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const Eigen::Quaterniond rotation(parameters[0]);
     const RigidTransform pose{rotation.toRotationMatrix(), extent_ * Eigen::Map<const Eigen::Vector3d>(parameters[1])};
-    const RigidCost at = rigid_cost(pairs_, pose, loss_);
+    const RigidCost& at = cost_at(pose);
     Eigen::Matrix<double, 6, 1> unit = Eigen::Matrix<double, 6, 1>::Ones();
     unit.tail<3>().setConstant(extent_);
     const Eigen::LLT<Matrix6> factor(unit.asDiagonal() * at.normal * unit.asDiagonal());
@@ -50,9 +52,19 @@ class RigidCostFunction final : public ceres::SizedCostFunction<7, 4, 3> {
   }
 
  private:
+  const RigidCost& cost_at(const RigidTransform& pose) const {
+    if (!latest_ || latest_->rotation != pose.rotation || latest_->translation != pose.translation) {
+      latest_cost_ = rigid_cost(pairs_, pose, loss_);
+      latest_ = pose;
+    }
+    return latest_cost_;
+  }
+
   const MatchedPoints& pairs_;
   const ScaledLoss loss_;
   const double extent_;
+  mutable std::optional<RigidTransform> latest_;
+  mutable RigidCost latest_cost_;
 };
 
 ceres::Solver::Options solver_options(double tolerance, int iterations) {
