@@ -65,14 +65,22 @@ bool has_confidence(const Board& board) {
   return std::any_of(board.rows.begin(), board.rows.end(), [](const BoardRow& row) { return row.confidence.has_value(); });
 }
 
-std::string needs_text(const FactsByMethod& facts, const std::string& method) {
+MethodFacts facts_of(const FactsByMethod& facts, const std::string& method) {
   const auto found = facts.find(method);
-  return found == facts.end() ? "" : found->second.needs;
+  return found == facts.end() ? MethodFacts() : found->second;
+}
+
+std::string words_cell(const std::string& text) { return "<td class=\"words\">" + html(text) + "</td>"; }
+
+std::string contract_text(const MethodFacts& known) {
+  if (!known.is_checked) return "";
+  return known.broken.empty() ? "holds" : "breaks " + std::to_string(known.broken.size());
 }
 
 std::string board_page(const Board& board, const FactsByMethod& facts) {
   std::string table = "<p>" + std::to_string(board.tables) +
                       " tables. Success: the refined pose has a mean error of at most 5 pr; its Wilson interval of 95 % is in the last columns. "
+                      "MB: peak memory for 10,000 matches. "
                       "Columns in per cent: the tables with that share of correct matches. Shaded: methods that the tables do not tell from "
                       "the best (their interval holds its share). Choose a header to sort.</p>\n<div class=\"wide\"><table class=\"sortable\">\n<thead><tr>" +
                       head("rank") + head("method", false) + head("success");
@@ -82,7 +90,8 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
       bins.push_back(bin), table += head(board_share_text(bin));
   table += head("precision") + head("recall") + head("F1") + head("time ms");
   if (has_confidence(board)) table += head("confidence");
-  table += head("needs", false) + head("run by", false) + head("low") + head("high") + "</tr></thead>\n<tbody>\n";
+  table += head("MB") + head("needs", false) + head("deterministic", false) + head("contract", false) + head("licence", false) +
+           head("run by", false) + head("low") + head("high") + "</tr></thead>\n<tbody>\n";
   double best = 0;
   for (const BoardRow& row : board.rows)
     if (row.rank == 1) best = row.all.success;
@@ -96,8 +105,10 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
     for (const std::size_t bin : bins) table += share_cell(row.by_share[bin]);
     table += cell(row.precision, 3) + cell(row.recall, 3) + cell(row.f1, 3) + cell(row.median_ms, 2);
     if (has_confidence(board)) table += cell(row.confidence, 3);
-    table += "<td class=\"words\">" + html(needs_text(facts, row.method)) + "</td><td class=\"words\">" +
-             (is_oracle ? "" : row.is_submitted ? std::string("submitted") + (row.is_time_stated ? ", time as stated" : "") : "Corral") + "</td>" +
+    const MethodFacts known = facts_of(facts, row.method);
+    table += cell(known.memory_10k_mb, 1) + words_cell(known.needs) + words_cell(known.determinism.empty() ? "" : "yes") +
+             words_cell(contract_text(known)) + words_cell(known.licence) +
+             words_cell(is_oracle ? "" : row.is_submitted ? std::string("submitted") + (row.is_time_stated ? ", time as stated" : "") : "Corral") +
              cell(is_oracle || is_ranked ? std::optional<double>(row.all.low) : std::nullopt, 3) +
              cell(is_oracle || is_ranked ? std::optional<double>(row.all.high) : std::nullopt, 3) + "</tr>\n";
   }
@@ -129,10 +140,12 @@ std::string fact_row(const std::string& name, const std::string& value) {
 }
 
 std::string card_page(const std::string& method, const std::vector<Board>& boards, const FactsByMethod& facts) {
-  const auto found = facts.find(method);
-  const MethodFacts known = found == facts.end() ? MethodFacts() : found->second;
+  const MethodFacts known = facts_of(facts, method);
+  std::string memory;
+  if (known.memory_1k_mb && known.memory_10k_mb)
+    memory = fixed(*known.memory_1k_mb, 1) + " MB for 1,000 matches, " + fixed(*known.memory_10k_mb, 1) + " MB for 10,000";
   std::string body = "<p>" + link("index.html", "All boards") + "</p>\n<dl>\n" + fact_row("Principle", known.principle) +
-                     fact_row("Needs", known.needs) + fact_row("Determinism", known.determinism) + fact_row("Memory", known.memory) +
+                     fact_row("Needs", known.needs) + fact_row("Determinism", known.determinism) + fact_row("Memory", memory) +
                      fact_row("Licence", known.licence) + fact_row("Where", known.url);
   if (known.is_checked) {
     std::string broken;
@@ -210,7 +223,8 @@ std::string scoreboard_json(const std::vector<Board>& boards, const FactsByMetho
   }
   for (const auto& [method, each] : facts)
     known[method] = {{"title", each.title}, {"needs", each.needs}, {"licence", each.licence}, {"url", each.url},
-                     {"determinism", each.determinism}, {"memory", each.memory},
+                     {"determinism", each.determinism}, {"memory_1k_mb", json_or_null(each.memory_1k_mb)},
+                     {"memory_10k_mb", json_or_null(each.memory_10k_mb)},
                      {"broken", each.is_checked ? Json(each.broken) : Json(nullptr)}};
   return json_text({{"shares_percent", kBoardShares}, {"boards", list}, {"methods", known}});
 }

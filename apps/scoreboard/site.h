@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace corral {
 struct MethodFacts {
   std::string title, principle, url, licence, needs;
   std::string determinism;             ///< "same rows for the same table"
-  std::string memory;                  ///< for 1,000 and 10,000 matches
+  std::optional<double> memory_1k_mb, memory_10k_mb;  ///< peak, for 1,000 and 10,000 matches
   std::vector<std::string> broken;     ///< checks of the contract that it breaks (conformance.h)
   bool is_checked = false;             ///< the contract was put to it
 };

@@ -49,11 +49,10 @@ std::string needs_of(const GroupFunction& group) {
 
 MethodFacts facts_of(const Grouper& method, bool with_checks) {
   const ConfiguredGrouper configured = method.configure({});
-  MethodFacts facts{method.title, method.principle, "", "MIT", needs_of(configured.group), "", "", {}, false};
+  MethodFacts facts{method.title, method.principle, "", "MIT", needs_of(configured.group), "", {}, {}, {}, false};
   facts.determinism = "the same rows for the same table; draws, if any, are seeded";
   if (configured.working_memory)
-    facts.memory = fixed(configured.working_memory(1000) / 1e6, 1) + " MB for 1,000 matches, " +
-                   fixed(configured.working_memory(10000) / 1e6, 1) + " MB for 10,000";
+    facts.memory_1k_mb = configured.working_memory(1000) / 1e6, facts.memory_10k_mb = configured.working_memory(10000) / 1e6;
   if (!with_checks) return facts;
   facts.is_checked = true;
   for (const ConformanceCheck& check : check_conformance(configured.group))
@@ -68,7 +67,7 @@ void add_submitted(const std::vector<std::string>& studies, FactsByMethod& facts
     if (!std::filesystem::exists(study + "/method.toml", ignored)) continue;
     const Submission submission = read_submission(study);
     facts[submission.name] = {submission.title, "", submission.url, submission.licence, submission.needs,
-                              submission.is_deterministic ? "deterministic, as its authors say" : "", "", {}, false};
+                              submission.is_deterministic ? "deterministic, as its authors say" : "", {}, {}, {}, false};
   }
 }
 

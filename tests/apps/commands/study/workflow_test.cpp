@@ -61,6 +61,24 @@ TEST_F(Workflow, Snakemake) {
   EXPECT_THAT(place_.text("log"), ::testing::HasSubstr("Nothing to be done"));
 }
 
+TEST_F(Workflow, EveryEngineGivesThePlugInsOfAStudyToItsMerge) {
+  const std::string plugin = "--plugin " CORRAL_LENGTHS_PLUGIN;
+  ASSERT_EQ(place_.corral("evaluate 'a test.toml' --data data -o whole " + plugin).status, 0);
+  const std::map<std::string, std::string> expected = lasting_files(place_, "whole");
+  if (has("parallel")) {
+    EXPECT_EQ(run(kSource + "/apps/workflow/parallel 2 'of parallel' 'a test.toml' --data data " + plugin), 0) << place_.text("log");
+    EXPECT_EQ(lasting_files(place_, "of parallel"), expected);
+  }
+  if (has("snakemake")) {
+    EXPECT_EQ(run("snakemake -s " + kSource + "/apps/workflow/Snakefile --cores 2 --config program=" CORRAL_PROGRAM
+                  " 'experiments=[\"a test.toml\"]' data=data 'study=of snakemake' shards=2 'options=[\"--plugin\", "
+                  "\"" CORRAL_LENGTHS_PLUGIN "\"]'"),
+              0)
+        << place_.text("log");
+    EXPECT_EQ(lasting_files(place_, "of snakemake"), expected);
+  }
+}
+
 TEST_F(Workflow, Ssh) {
   const int status = disturb(kSource + "/tests/ssh");
   if (status == 77) GTEST_SKIP() << place_.text("log");

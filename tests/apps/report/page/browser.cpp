@@ -67,8 +67,7 @@ Browser::Browser(int width, int height) {
   session_ = call("Target.attachToTarget", {{"targetId", target.at("targetId")}, {"flatten", true}}).at("sessionId");
   for (const char* domain : {"Page.enable", "Runtime.enable", "Network.enable", "Log.enable"})
     call(domain, Json::object());
-  call("Emulation.setDeviceMetricsOverride",
-       {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
+  resize(width, height);
 }
 
 Browser::~Browser() {
@@ -83,6 +82,11 @@ Browser::~Browser() {
   ::waitpid(process_, nullptr, 0);
   ::close(to_browser_);
   ::close(from_browser_);
+}
+
+void Browser::resize(int width, int height) {
+  call("Emulation.setDeviceMetricsOverride",
+       {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
 
 void Browser::open(const std::string& path) {

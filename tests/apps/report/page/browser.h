@@ -21,6 +21,7 @@ class Browser {
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
+  void resize(int width, int height);  ///< of the window, in pixels
   void open(const std::string& path);  ///< a file; returns when it is loaded
   /// The value of a JavaScript expression. Throws std::runtime_error with what the page throws.
   nlohmann::json evaluate(const std::string& expression);
