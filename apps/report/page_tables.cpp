@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "apps/report/figure/method_style.h"
+#include "apps/results/found_statements.h"
 #include "apps/runtime/json.h"
 #include "io/disk/file.h"
 #include "kernel/error.h"
@@ -175,6 +176,35 @@ Json styles_of(const std::vector<StudyResults>& studies) {
   return styles;
 }
 
+Json share_json(const MethodShare& share) {
+  return {{"method", share.method}, {"pairs", share.pairs}, {"success", rounded(share.success)}, {"low", rounded(share.low)},
+          {"high", rounded(share.high)}, {"median_ms", rounded(share.median_ms)}};
+}
+
+Json choice_of(const SetTable& table) {
+  const MethodChoice choice = choose_method(table);
+  Json shown = Json::array(), cells = Json::array();
+  for (std::size_t i = 0; i < choice.methods.size(); ++i) {
+    shown.push_back(share_json(choice.methods[i]));
+    shown.back()["front"] = static_cast<bool>(choice.is_on_front[i]);
+  }
+  for (std::size_t share = 0; share < kCorrectShares.size(); ++share)
+    for (std::size_t count = 0; count < kMatchCounts.size(); ++count) {
+      const ChoiceCell& cell = choice.cells[share][count];
+      if (cell.pairs == 0) continue;
+      Json best = Json::array();
+      for (const MethodShare& each : cell.best) best.push_back(share_json(each));
+      cells.push_back({{"correct", correct_share_text(share)}, {"matches", match_count_text(count)}, {"pairs", cell.pairs}, {"best", best}});
+    }
+  return {{"dataset", choice.dataset}, {"pairs", choice.pairs}, {"methods", shown},
+          {"perfect", choice.perfect ? share_json(*choice.perfect) : Json(nullptr)}, {"cells", cells}};
+}
+
+Json found_json(const FoundStatement& found) {
+  return {{"text", found.text}, {"dataset", found.dataset}, {"pairs", found.pairs}, {"margin", rounded(found.margin)},
+          {"low", rounded(found.low)}, {"high", rounded(found.high)}};
+}
+
 /// By the name of the experiment.
 std::map<std::string, int> least_true_matches(const StudyFolder& run) {
   std::map<std::string, int> least;
@@ -217,11 +247,17 @@ Json page_tables(const std::vector<StudyResults>& studies, const PageRecords& ca
     for (const StudyRecord* record : carried[number])
       add_record(columns, words, static_cast<int>(number), *record, role_of(*record, least[record->experiment]));
   }
+  Json choices = Json::array(), found = Json::array();
+  const std::vector<SetTable> sets = set_tables(studies);
+  for (const SetTable& set : sets) choices.push_back(choice_of(set));
+  for (const FoundStatement& statement : found_statements(sets)) found.push_back(found_json(statement));
   return {{"runs", folders},
           {"experiments", experiments},
           {"measures", measures_of()},
           {"styles", styles_of(studies)},
           {"totals", totals_of(studies)},
+          {"choices", choices},
+          {"found", found},
           {"words", words.list()},
           {"records", columns}};
 }

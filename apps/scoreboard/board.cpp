@@ -7,11 +7,8 @@
 
 #include "apps/results/statistics.h"
 #include "kernel/error.h"
-#include "kernel/number_text.h"
 
 namespace corral {
-
-const std::vector<double> kBoardShares = {1, 2, 5, 10, 20, 50, 100};
 
 namespace {
 
@@ -84,10 +81,10 @@ BoardRow row_of(const StudyResults& study, const ExperimentTable& table, const J
   const RowNumbers success = numbers_of(table, method, "success_5pr");
   row.all = share_of(success);
   double from = 0;
-  for (const double to : kBoardShares) {
+  for (const double to : kCorrectShares) {
     RowNumbers within;
     for (std::size_t i = 0; i < success.size(); ++i)
-      if (judged.shares[i] >= from && (judged.shares[i] < to || to == kBoardShares.back())) within.push_back(success[i]);
+      if (judged.shares[i] >= from && (judged.shares[i] < to || to == kCorrectShares.back())) within.push_back(success[i]);
     const BoardShare share = share_of(within);
     row.by_share.push_back(share.tables > 0 ? std::optional<BoardShare>(share) : std::nullopt);
     from = to;
@@ -121,10 +118,6 @@ void rank(Board& board) {
 }
 
 }  // namespace
-
-std::string board_share_text(std::size_t bin) {
-  return to_text(bin == 0 ? 0 : kBoardShares[bin - 1]) + " to " + to_text(kBoardShares[bin]) + " %";
-}
 
 const BoardRow* Board::row_of(const std::string& method) const {
   for (const BoardRow& row : rows)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/results/study_results.h"
+#include "apps/results/set_table.h"
 
 namespace corral {
 
@@ -23,15 +23,11 @@ struct BoardRow {
   bool is_submitted = false;  ///< its answers came in files
   int rank = 0;               ///< by success, from 1; equal shares have the same; 0: it applies to no table
   BoardShare all;
-  std::vector<std::optional<BoardShare>> by_share;  ///< by the share of correct matches, one for each of kBoardShares
+  std::vector<std::optional<BoardShare>> by_share;  ///< by the share of correct matches, one for each of kCorrectShares
   std::optional<double> precision, recall, f1, confidence;
   std::optional<double> median_ms;
   bool is_time_stated = false;  ///< by the method, not taken by Corral
 };
-
-/// Bins of the share of correct matches in per cent: from the number before, the first from 0.
-extern const std::vector<double> kBoardShares;
-std::string board_share_text(std::size_t bin);
 
 /// All methods on the pairs of one experiment on one data set.
 struct Board {

@@ -85,9 +85,9 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
                       "the best (their interval holds its share). Choose a header to sort.</p>\n<div class=\"wide\"><table class=\"sortable\">\n<thead><tr>" +
                       head("rank") + head("method", false) + head("success");
   std::vector<std::size_t> bins;  // with any table
-  for (std::size_t bin = 0; bin < kBoardShares.size(); ++bin)
+  for (std::size_t bin = 0; bin < kCorrectShares.size(); ++bin)
     if (std::any_of(board.rows.begin(), board.rows.end(), [&](const BoardRow& row) { return row.by_share[bin].has_value(); }))
-      bins.push_back(bin), table += head(board_share_text(bin));
+      bins.push_back(bin), table += head(correct_share_text(bin));
   table += head("precision") + head("recall") + head("F1") + head("time ms");
   if (has_confidence(board)) table += head("confidence");
   table += head("MB") + head("needs", false) + head("deterministic", false) + head("contract", false) + head("licence", false) +
@@ -128,7 +128,7 @@ std::string weak_spot(const Board& board, const BoardRow& row) {
       const double behind = other.by_share[bin]->success - row.by_share[bin]->success;
       if (behind <= most) continue;
       most = behind;
-      text = "On tables with " + board_share_text(bin) + " correct matches it registers " + fixed(row.by_share[bin]->success, 2) + ", " +
+      text = "On tables with " + correct_share_text(bin) + " correct matches it registers " + fixed(row.by_share[bin]->success, 2) + ", " +
              other.method + " " + fixed(other.by_share[bin]->success, 2) + " (" + std::to_string(row.by_share[bin]->tables) + " tables).";
     }
   }
@@ -226,7 +226,7 @@ std::string scoreboard_json(const std::vector<Board>& boards, const FactsByMetho
                      {"determinism", each.determinism}, {"memory_1k_mb", json_or_null(each.memory_1k_mb)},
                      {"memory_10k_mb", json_or_null(each.memory_10k_mb)},
                      {"broken", each.is_checked ? Json(each.broken) : Json(nullptr)}};
-  return json_text({{"shares_percent", kBoardShares}, {"boards", list}, {"methods", known}});
+  return json_text({{"shares_percent", kCorrectShares}, {"boards", list}, {"methods", known}});
 }
 
 }  // namespace corral

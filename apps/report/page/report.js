@@ -82,6 +82,7 @@
   panels.start(showPoint);
   pairView.start(showRecord);
   recordTable.start(showRecord);
+  choices.start();
   showFindings();
   byId('run-facts').append(...data.runs.flatMap(run => [element('h3', {}, run.folder), factList(run.facts)]));
   const first = data.scenes.find(scene => !scene.problem) || data.scenes[0];
