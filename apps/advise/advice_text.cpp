@@ -94,6 +94,9 @@ std::string advice_text(const Advice& advice, const AdviceOptions& options) {
   if (!first.is_affordable) return text + "No method stays within " + fixed(options.budget_ms, 1) + " ms.\n";
   text += "\nuse " + first.method + ": it registers " + share_text(first) + ", in " + fixed(first.median_ms, 1) +
           " ms on the median pair\n";
+  constexpr int kFew = 5;
+  if (first.pairs < kFew)
+    text += "that is little to go by: " + std::to_string(first.pairs) + (first.pairs == 1 ? " pair" : " pairs") + " could be judged\n";
   const std::vector<std::string> ties = advice.ties();
   if (!ties.empty()) {
     text += "not distinguishable from it on these pairs:";

@@ -54,15 +54,23 @@ void add_fields(CLI::App& command, Options& options, const std::string& group) {
 
 }  // namespace
 
+void add_detector_and_descriptor(CLI::App& command, MatchSettings& settings) {
+  command.add_option("--detector", settings.detector, "Keypoints; 'corral detectors' has their options")
+      ->capture_default_str()
+      ->type_name(names_of(detectors()))
+      ->group("Matching");
+  command.add_option("--descriptor", settings.descriptor, "Features; 'corral descriptors' has their options")
+      ->capture_default_str()
+      ->type_name(names_of(descriptors()))
+      ->group("Matching");
+}
+
 void add_match_options(CLI::App& command, MatchSettings& settings) {
   const auto option = [&](const std::string& name, auto& value, const std::string& text) {
     return command.add_option(name, value, text)->capture_default_str()->group("Matching");
   };
   option("--resolution", settings.resolution, "pr of the pair: mean, source, target, or a length in mesh units");
-  option("--detector", settings.detector, "Keypoints; 'corral detectors' has their options")
-      ->type_name(names_of(detectors()));
-  option("--descriptor", settings.descriptor, "Features; 'corral descriptors' has their options")
-      ->type_name(names_of(descriptors()));
+  add_detector_and_descriptor(command, settings);
   add_fields(command, settings, "Matching");
   option("--sensor", settings.sensor, "Where the sensor stood, in mesh units: normals point to it")
       ->delimiter(',')

@@ -18,6 +18,7 @@ namespace corral {
 
 /// All that decides how two surfaces are matched, but --set.
 void add_match_options(CLI::App& command, MatchSettings& settings);
+void add_detector_and_descriptor(CLI::App& command, MatchSettings& settings);  ///< of these, the two alone
 void check_usage(const MatchSettings& settings);
 
 /// --drop-stray, for read_input().

@@ -24,7 +24,7 @@ std::vector<PlannedTable> plan_tables(const MakeChallengeOptions& options, const
   std::vector<PlannedTable> tables;
   for (const DatasetPair& pair : real.pairs) {
     if (pair.matches.empty() || pair.truth.empty())
-      throw IoError(real.path("pairs.csv"), "pair " + pair.name, "has no table of matches with a truth to draw from");
+      throw IoError(real.path("pairs.csv"), "pair " + pair.name, "has no table of matches with a truth to draw from; 'corral dataset make tables' makes tables of surfaces");
     for (const int size : options.sizes)
       for (const double ratio : options.inlier_ratios)
         for (const double noise : options.noises_pr)
@@ -95,7 +95,12 @@ void make_challenge(const MakeChallengeOptions& options, Progress& progress) {
     options.parallel(per_real, [&](int i) {
       const PlannedTable& table = tables[first + static_cast<std::size_t>(i)];
       const std::string file = "matches/" + table.name + ".csv";
-      if (!folder.has(file)) folder.put(file, matches_text(draw_challenge(matches, truth, table.options)));
+      if (folder.has(file)) return;
+      try {
+        folder.put(file, matches_text(draw_challenge(matches, truth, table.options)));
+      } catch (const InvalidInput& error) {
+        throw IoError(real.path("pairs.csv"), "pair " + pair.name, error.what());
+      }
     });
   }
   folder.finish(dataset);

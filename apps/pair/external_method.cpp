@@ -77,6 +77,19 @@ bool exists(const std::string& file) {
   return fs::exists(file, ignored);
 }
 
+/// The answer in {group}, under a name that says what it is: numpy adds .npy to a name, or writes an array into an open file.
+std::string group_file(const std::string& named) {
+  const std::string array = named + ".npy";
+  if (!exists(array) && exists(named) && read_file(named).rfind("\x93NUMPY", 0) == 0) fs::rename(named, array);
+  return exists(array) ? array : named;
+}
+
+/// Whether a program that ended well wrote nothing into its answer, or an array of nothing: it selects nothing.
+bool is_empty(const std::string& file) {
+  const std::string content = read_file(file);
+  return content.empty() || (content.rfind("\x93NUMPY", 0) == 0 && content.substr(0, 256).find("'shape': (0,)") != std::string::npos);
+}
+
 }  // namespace
 
 std::vector<OptionValue> ExternalMethod::options() const {
@@ -127,11 +140,16 @@ ExternalAnswer call_external(const ExternalMethod& method, const CorrespondenceS
          end, files);
   if (end.status != 0) fail(method, "ended with status " + std::to_string(end.status), end, files);
   const bool has_group = names_file(method, "{group}"), has_pose = exists(files[2].second);
-  if (has_group && !exists(files[1].second)) fail(method, "wrote no file {group}", end, files);
+  const std::string group = has_group ? group_file(files[1].second) : "";
+  if (has_group && !exists(group)) fail(method, "wrote no file {group}", end, files);
   if (!has_group && !has_pose) fail(method, "wrote no file {pose}", end, files);
   try {
-    return {read_answer({has_group ? files[1].second : "", has_pose ? files[2].second : "", "", {}}, matches),
-            end.milliseconds};
+    const bool selects_nothing = has_group && is_empty(group);
+    ExternalAnswer answer{{}, end.milliseconds};
+    if (!selects_nothing || has_pose)
+      answer.found = read_answer({selects_nothing ? "" : group, has_pose ? files[2].second : "", "", {}}, matches);
+    if (selects_nothing) answer.found.selected.clear();
+    return answer;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -32,7 +32,9 @@ std::string file_part(const std::string& text) {
 std::string page_name(const Board& board) { return file_part(board.experiment + "-" + board.dataset) + ".html"; }
 std::string card_name(const std::string& method) { return "method-" + file_part(method) + ".html"; }
 
-std::string link(const std::string& file, const std::string& text) { return "<a href=\"" + html(file) + "\">" + html(text) + "</a>"; }
+std::string link(const std::string& file, const std::string& text, const std::string& hint = "") {
+  return "<a href=\"" + html(file) + "\"" + (hint.empty() ? "" : " title=\"" + html(hint) + "\"") + ">" + html(text) + "</a>";
+}
 
 std::string page(const std::string& title, const std::string& body) {
   const EmbeddedFiles& files = embedded_scoreboard();
@@ -97,15 +99,15 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
     if (row.rank == 1) best = row.all.success;
   for (const BoardRow& row : board.rows) {
     const bool is_oracle = row.method == "oracle";
+    const MethodFacts known = facts_of(facts, row.method);
     const bool is_ranked = row.rank > 0, is_tie = is_ranked && row.all.high >= best;
     table += std::string("<tr") + (is_oracle ? " class=\"oracle\"" : is_tie ? " class=\"tie\"" : "") + "><td data-value=\"" +
              (is_ranked ? std::to_string(row.rank) : "") + "\">" + (is_ranked ? std::to_string(row.rank) : "") +
-             "</td><th scope=\"row\">" + (is_oracle ? "all correct matches" : link(card_name(row.method), row.method)) + "</th>" +
+             "</td><th scope=\"row\">" + (is_oracle ? "all correct matches" : link(card_name(row.method), row.method, known.title)) + "</th>" +
              share_cell(row.all.tables > 0 ? std::optional<BoardShare>(row.all) : std::nullopt);
     for (const std::size_t bin : bins) table += share_cell(row.by_share[bin]);
     table += cell(row.precision, 3) + cell(row.recall, 3) + cell(row.f1, 3) + cell(row.median_ms, 2);
     if (has_confidence(board)) table += cell(row.confidence, 3);
-    const MethodFacts known = facts_of(facts, row.method);
     table += cell(known.memory_10k_mb, 1) + words_cell(known.needs) + words_cell(known.determinism.empty() ? "" : "yes") +
              words_cell(contract_text(known)) + words_cell(known.licence) +
              words_cell(is_oracle ? "" : row.is_submitted ? std::string("submitted") + (row.is_time_stated ? ", time as stated" : "") : "Corral") +

@@ -5,6 +5,7 @@
 #include "apps/dataset/make_b3r.h"
 #include "apps/dataset/make_challenge.h"
 #include "apps/dataset/make_default.h"
+#include "apps/dataset/make_tables.h"
 #include "apps/dataset/make_u3m.h"
 #include "apps/dataset/make_u3or.h"
 #include "apps/dataset/set_folder.h"
@@ -205,6 +206,38 @@ void add_challenge(CLI::App& make, Action& action) {
   });
 }
 
+void add_table_set(CLI::App& make, Action& action) {
+  struct Settings {
+    MakeTablesOptions options;
+    std::vector<std::string> set;
+    int threads = 0;
+  };
+  auto* command = make.add_subcommand("tables", "The tables of matches of a set of surfaces: what scoreboards and challenges are made from");
+  auto settings = std::make_shared<Settings>();
+  command->add_option("--data", settings->options.data, "A data set with surfaces")->type_name("FOLDER")->required();
+  add_output(*command, settings->options.output);
+  add_detector_and_descriptor(*command, settings->options.matching);
+  add_set_option(*command, settings->set);
+  add_threads(*command, settings->threads);
+  command->footer(
+      "Truths and attributes are kept. An interrupted command continues when it is repeated.\n"
+      "Example:\n  corral dataset make tables --data build/data/default/u3m -o data/u3m-tables");
+  command->callback([settings, &action] {
+    action = [settings]() -> int {
+      MakeTablesOptions& options = settings->options;
+      const OptionsByName given = parse_set(settings->set);
+      require_in_use(given, options.matching.in_use());
+      options.matching.options = surface_part(given);
+      check_usage(options.matching);
+      keep_inputs({options.data}, {options.output});
+      options.parallel = workers(settings->threads);
+      Progress progress(count_tables(options));
+      make_tables(options, progress);
+      return kOk;
+    };
+  });
+}
+
 }  // namespace
 
 void add_dataset_make(CLI::App& dataset, Action& action) {
@@ -213,6 +246,7 @@ void add_dataset_make(CLI::App& dataset, Action& action) {
   add_b3r(*make, action);
   add_u3or(*make, action);
   add_u3m(*make, action);
+  add_table_set(*make, action);
   add_challenge(*make, action);
   add_default(*make, action);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // corral register: two scans without a truth, one pose.
+#include <algorithm>
+
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
 #include "apps/pair/confidence.h"
@@ -26,6 +28,7 @@ struct Settings {
   TruthSettings truth;
   MatchSettings match;
   std::vector<std::string> set;
+  double least_confidence = 0;
   bool drop_stray = false, json = false;
 };
 
@@ -105,12 +108,24 @@ std::string in_words(const Registration& found, bool has_surfaces) {
   return table.str();
 }
 
-void draw(const Settings& settings, const Surfaces& surfaces, const RigidTransform& pose) {
+void draw(const Settings& settings, const Surfaces& surfaces, const RigidTransform& pose, double probability) {
   PairScene scene;
   scene.truth = pose;
   scene.source = painted_surface(surfaces.source);
   scene.target = painted_surface(surfaces.target);
-  write_file(settings.picture, png_bytes(alignment_pictures(scene, {{"registered", pose}}, 1200).front()));
+  write_file(settings.picture, png_bytes(alignment_pictures(scene, {{std::string(verdict(probability)) + ": probability " + fixed(probability, 2), pose}}, 1200).front()));
+}
+
+/// The files that were asked for, unless the pose is less probable than it has to be; what is distrusted is said.
+void write_outputs(const Settings& settings, const std::optional<Surfaces>& surfaces, const RigidTransform& pose, double probability) {
+  const std::vector<std::string> outputs = outputs_of(settings);
+  const bool is_asked = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) { return !output.empty(); });
+  if (!is_asked) return;
+  if (probability < settings.least_confidence) return say("note: nothing was written: the probability is below --least-confidence");
+  if (!settings.output.empty()) write_file(settings.output, transform_text(pose));
+  if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
+  if (!settings.picture.empty()) draw(settings, *surfaces, pose, probability);
+  if (probability < kDoubted) say("note: the pose was written although it is not one to use");
 }
 
 int register_two(Settings settings) {
@@ -151,19 +166,15 @@ int register_two(Settings settings) {
                                      : table_truth(pair.matches, *truth, 4);
     errors = pose_errors(found.poses.front().target_from_source, right, pair.matches.resolution);
   }
-  if (!found.poses.empty()) {
-    const RigidTransform& pose = found.poses.front().target_from_source;
-    if (!settings.output.empty()) write_file(settings.output, transform_text(pose));
-    if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
-    if (!settings.picture.empty()) draw(settings, *surfaces, pose);
-  }
   const ConfidenceModel& model = surfaces ? models.surfaces : models.table;
+  const double probability = found.signals ? model.probability(*found.signals) : 0;
+  if (!found.poses.empty()) write_outputs(settings, surfaces, found.poses.front().target_from_source, probability);
   if (settings.json)
     put("", to_json(found, pair.matches.size(), errors, model));
   else
     put("", in_words(found, surfaces.has_value()) +
                 (found.signals ? confidence_sentence(model, *found.signals) + "\n" : ""));
-  return found.poses.empty() ? kPartial : kOk;
+  return found.poses.empty() || probability < settings.least_confidence ? kPartial : kOk;
 }
 
 }  // namespace
@@ -183,6 +194,11 @@ void add_register(CLI::App& app, Action& action) {
   command
       ->add_option("--confidence", settings->confidence, "The model of 'corral calibrate' (default: of made scans, paper/README.md)")
       ->type_name("FILE");
+  command
+      ->add_option("--least-confidence", settings->least_confidence,
+                   "Write nothing, and end with status 4, if the pose registers the pair with a smaller probability")
+      ->type_name("0..1")
+      ->check(CLI::Range(0.0, 1.0));
   add_truth_options(*command, settings->truth, ": adds the errors of the pose to --json");
   command->add_flag("--json", settings->json, "Poses with what speaks for each, as JSON");
   add_match_options(*command, settings->match);
@@ -192,6 +208,10 @@ void add_register(CLI::App& app, Action& action) {
       "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole surfaces;\n"
       "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from there, and poses\n"
       "are dropped that put points in front of what the other one saw.\n"
+      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those within 5 pr of the pose; a few suffice where\n"
+      "the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
+      "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other sensor saw.\n"
+      "Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
       "Examples:\n  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
       "  corral register --matches matches.csv -o pose.txt");
   command->callback([settings, &action] { action = [settings] { return register_two(*settings); }; });

@@ -141,6 +141,11 @@ TEST(MakeChallenge, IsADataSetOfItsTables) {
   EXPECT_EQ(place.corral("dataset check set").status, 0);
   EXPECT_EQ(place.corral("evaluate inlier-ratio --data set -o study").status, 0);
   EXPECT_THAT(place.text("study/summary.csv"), HasSubstr("inlier-ratio,challenge,\"[5,10)\",gc,4,"));
+  RigidTransform elsewhere = real.truth;
+  elsewhere.translation.array() += 1e6;
+  place.put("real/t.txt", transform_text(elsewhere));
+  EXPECT_THAT(place.corral("dataset make challenge --tables real --sizes 100 --ratios 5 -o none").err, HasSubstr("pair p: "))
+      << "no correct match to draw from";
   place.put("real/pairs.csv", "pair,source,target,truth,matches\np,,,,m.csv\n");
   EXPECT_THAT(place.corral("dataset make challenge --tables real -o other").err,
               HasSubstr("has no table of matches with a truth"));

@@ -7,6 +7,7 @@
 #include "io/matches/group_file.h"
 #include "io/pose/transform_file.h"
 #include "kernel/synthetic.h"
+#include "tests/io/array/npy_encoder.h"
 #include "tests/io/scratch.h"
 
 namespace corral {
@@ -75,6 +76,24 @@ TEST_F(External, ItsSelectionIsScoredAndRefinedAsThatOfAGrouper) {
 TEST_F(External, ReadsTheTableThatTheProgramsReadAndItsRowsInAnyForm) {
   const std::string last_rows = "grep -vc '^#' $matches | awk '{for (i = $1 - 4; i < $1 - 1; i++) print i}' > $group";
   EXPECT_THAT(evaluate(method(last_rows)).found.selected, ElementsAre(97, 98, 99));
+}
+
+TEST_F(External, TakesArraysAsNumpySavesThem) {
+  put_text(folder_ / "rows", npy("(3,)", {1, 2, 5}));
+  put_text(folder_ / "none", npy("(0,)", {}));
+  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group.npy")).found.selected, ElementsAre(1, 2, 5)) << "by a name";
+  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group")).found.selected, ElementsAre(1, 2, 5)) << "into a file";
+  const MethodRecord none = evaluate(method("cp " + (folder_ / "none") + " $group.npy"));
+  EXPECT_EQ(none.failure, "");
+  EXPECT_THAT(none.found.selected, ::testing::IsEmpty());
+}
+
+TEST_F(External, AnEmptyFileOfAProgramThatEndedWellSelectsNothing) {
+  const MethodRecord record = evaluate(method(": > $group"));
+  EXPECT_EQ(record.failure, "");
+  EXPECT_THAT(record.found.selected, ::testing::IsEmpty());
+  EXPECT_THAT(failure(": > $group; exit 1"), HasSubstr("ended with status 1"));
+  EXPECT_THAT(failure("echo ' ' > $group"), HasSubstr("mine: {group}")) << "as good as nothing, but not empty";
 }
 
 TEST_F(External, APoseAloneSelectsWhatItExplains) {

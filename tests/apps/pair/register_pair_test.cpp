@@ -130,6 +130,34 @@ TEST(Register, IsOneCommandForTwoScans) {
   EXPECT_THAT(place.corral("register model.ply copy.ply").out, ::testing::HasSubstr("coverage"));
 }
 
+TEST(Register, WritesNothingThatIsLessProbableThanAskedFor) {
+  const Workplace place;
+  place.put_problem();
+  const double probability = place.corral("register --matches matches.csv --json").json()["confidence"]["probability"];
+  ASSERT_GT(probability, 0.5);
+  ASSERT_LT(probability, 1);
+  const std::string call = "register --matches matches.csv -o pose.txt --least-confidence ";
+  const auto refused = place.corral(call + to_text((1 + probability) / 2));
+  EXPECT_EQ(refused.status, 4);
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("nothing was written"));
+  EXPECT_FALSE(std::filesystem::exists(place / "pose.txt"));
+  const auto written = place.corral(call + to_text(probability / 2));
+  EXPECT_EQ(written.status, 0);
+  EXPECT_TRUE(std::filesystem::exists(place / "pose.txt"));
+  EXPECT_EQ(written.err.find("note"), std::string::npos);
+}
+
+TEST(Register, ADoubtfulPoseIsWrittenWithAWord) {
+  const Workplace place;
+  SyntheticOptions options;
+  options.matches = 40, options.inlier_ratio = 0;
+  place.put("chance.csv", matches_text(make_synthetic_problem(options).matches));
+  const auto outcome = place.corral("register --matches chance.csv -o pose.txt");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("do not use it"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("note: the pose was written although it is not one to use"));
+}
+
 TEST(Register, ATableWillDoAndWhatIsWrongIsSaid) {
   const Workplace place;
   place.put_problem();

@@ -45,7 +45,7 @@ TEST(Scoreboard, FromAScriptToTheSite) {
   auto written = place.corral("scoreboard write ours theirs -o site --no-checks");
   ASSERT_EQ(written.status, 0) << written.err;
   const std::string board = place.text("site/scoreboard-two.html");
-  EXPECT_THAT(board, HasSubstr("<a href=\"method-mine.html\">mine</a>"));
+  EXPECT_THAT(board, HasSubstr("<a href=\"method-mine.html\" title=\""));
   EXPECT_THAT(board, HasSubstr("submitted, time as stated"));
   EXPECT_THAT(board, HasSubstr("all correct matches"));
   EXPECT_THAT(place.text("site/method-mine.html"), HasSubstr("deterministic, as its authors say"));
