@@ -57,13 +57,12 @@ const choices = (() => {
   }
 
   function methodTable(choice) {
-    const head = ['grouper', 'success', '95 %', 'median ms', 'pairs'];
+    const head = ['grouper', 'success', '95 %', 'median ms'];
     const rows = [...choice.methods, ...(choice.perfect ? [choice.perfect] : [])];
     const rowOf = m => element(
         'tr', {class: m.front && 'front'},
         element('td', {class: 'text'}, m === choice.perfect ? 'all correct matches' : labelOf(m.method)), element('td', {}, fixed(m.success, 3)),
-        element('td', {}, interval(m)), element('td', {}, isNumber(m.median_ms) && m !== choice.perfect ? String(Number(m.median_ms.toPrecision(3))) : '–'),
-        element('td', {}, String(m.pairs)));
+        element('td', {}, interval(m)), element('td', {}, isNumber(m.median_ms) && m !== choice.perfect ? String(Number(m.median_ms.toPrecision(3))) : '–'));
     return element(
         'div', {class: 'wide'},
         element('table', {}, element('thead', {}, element('tr', {}, ...head.map((h, i) => element('th', {scope: 'col', class: i === 0 && 'text'}, h)))),
