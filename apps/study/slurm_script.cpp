@@ -30,7 +30,7 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
 /// What follows the start of a shard. Slurm itself requeues what is lost with a node, but not what a signal ended. A wait that
 /// a signal interrupts returns before the shard has ended. The state is no longer RUNNING where a user cancels the job. The
 /// task goes by its array, as the last one of an array has the number of the whole for its job. 143 is an end in order, as before
-/// the limit of time, with more pairs done each time; other signals may come every time.
+/// the limit of time, with more pairs done each time; other signals may come every time. A busy controller may not answer at once.
 constexpr char kWatch[] =
     "shard=$!\n"
     "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
@@ -38,10 +38,16 @@ constexpr char kWatch[] =
     "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
     "most=5\n"
     "if [ \"$status\" = 143 ]; then most=100; fi\n"
-    "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt \"$most\" ] &&\n"
-    "  [ \"$(squeue -h -j \"$task\" -o %T)\" = RUNNING ]; then\n"
-    "  echo \"ended with status $status: back into the queue\"\n"
-    "  scontrol requeue \"$task\"\n"
+    "if [ \"$status\" -gt 128 ] && [ \"${SLURM_RESTART_COUNT:-0}\" -lt \"$most\" ]; then\n"
+    "  for try in 1 2 3 4 5; do\n"
+    "    state=$(squeue -h -j \"$task\" -o %T)\n"
+    "    if [ -n \"$state\" ] && [ \"$state\" != RUNNING ]; then break; fi\n"
+    "    if [ -n \"$state\" ]; then\n"
+    "      echo \"ended with status $status: back into the queue\"\n"
+    "      if scontrol requeue \"$task\"; then break; fi\n"
+    "    fi\n"
+    "    sleep 2\n"
+    "  done\n"
     "fi\n"
     "exit \"$status\"\n";
 
