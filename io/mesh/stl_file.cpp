@@ -38,13 +38,28 @@ class Welder {
     slots_.assign(slots, -1);
   }
 
+  using Corner = std::array<Number, 3>;
+
   /// The vertex at a corner.
-  int add(std::array<Number, 3> corner) {
-    for (Number& coordinate : corner) coordinate += 0;  // -0 and +0 are one place: the sum is +0 for both
+  int add(const Corner& corner) {
     if (2 * vertices_.size() >= slots_.size()) grow();
-    Bits bits;
-    std::memcpy(bits.data(), corner.data(), sizeof bits);
-    return vertex_at(bits);
+    return vertex_at(bits_of(corner));
+  }
+
+  /// The vertices at several corners. Most are there already; their slots, far apart in memory, and then their places are
+  /// read without waiting for one another.
+  template <std::size_t N>
+  void add(const std::array<Corner, N>& corners, std::size_t count, std::array<int, N>& vertices) {
+    if (2 * (vertices_.size() + count) >= slots_.size()) grow();
+    std::array<Bits, N> bits;
+    for (std::size_t i = 0; i < count; ++i) bits[i] = bits_of(corners[i]);
+    for (std::size_t i = 0; i < count; ++i) vertices[i] = slots_[hash_of(bits[i]) & (slots_.size() - 1)];
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_there = vertices[i] >= 0 && are_equal(vertices_[static_cast<std::size_t>(vertices[i])], bits[i]);
+      if (!is_there) vertices[i] = -1;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      if (vertices[i] < 0) vertices[i] = vertex_at(bits[i]);
   }
 
   Points vertices() const {
@@ -63,14 +78,18 @@ class Welder {
   using Word = std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>;
   using Bits = std::array<Word, 3>;
 
+  static Bits bits_of(Corner corner) {
+    for (Number& coordinate : corner) coordinate += 0;  // -0 and +0 are one place: the sum is +0 for both
+    Bits bits;
+    std::memcpy(bits.data(), corner.data(), sizeof bits);
+    return bits;
+  }
+
+  /// The sums of products do not wait for each other.
   static std::uint64_t hash_of(const Bits& bits) {
     constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;  // 2^64 by the golden ratio
-    std::uint64_t hash = 0;
-    for (const std::uint64_t word : bits) {
-      hash = (hash ^ word) * kOdd;
-      hash ^= hash >> 32;
-    }
-    return hash;
+    const std::uint64_t sum = bits[0] * kOdd + bits[1] * 0xbf58476d1ce4e5b9 + bits[2] * 0x94d049bb133111eb;
+    return (sum ^ sum >> 32) * kOdd >> 32;
   }
 
   /// Without a branch for each word, or a call.
@@ -129,22 +148,30 @@ StoredMesh parse_binary(const std::string& path, std::string_view content) {
                       " bytes with the header, but the file has " + std::to_string(content.size()));
   if (3 * facets > static_cast<std::uint64_t>(kMaximumCount))
     throw IoError(path, "byte " + std::to_string(kTitle), "more facets than can be counted");
+  constexpr std::size_t kBlock = 64;  // facets
   Welder<float> welder(static_cast<std::size_t>(facets));
   StoredMesh mesh;
   mesh.triangles.resize(static_cast<Eigen::Index>(facets), 3);
-  for (std::size_t facet = 0; facet < facets; ++facet) {
-    const std::size_t start = kHeader + kFacet * facet + 12;  // behind the normal, which the corners give anyway
-    std::array<double, 9> places;
-    decode_numbers(kCoordinate, false, content.data() + start, 4, places.size(), places.data());
-    for (std::size_t i = 0; i < places.size(); ++i)
-      if (std::isinf(places[i]))
-        throw IoError(path, "byte " + std::to_string(start + 4 * i),
-                      "found " + to_text(places[i]) + " in facet " + std::to_string(facet) + " of " +
-                          std::to_string(facets) + ", expected a finite coordinate");
-    const auto place = [&](std::size_t i) { return static_cast<float>(places[i]); };
-    for (std::size_t i = 0; i < 3; ++i)
-      mesh.triangles(static_cast<Eigen::Index>(facet), static_cast<Eigen::Index>(i)) =
-          welder.add({place(3 * i), place(3 * i + 1), place(3 * i + 2)});
+  std::array<Welder<float>::Corner, 3 * kBlock> corners;
+  std::array<int, 3 * kBlock> vertices;
+  for (std::size_t facet = 0; facet < facets;) {
+    const std::size_t first = facet;
+    for (std::size_t corner = 0; facet < std::min<std::size_t>(facets, first + kBlock); ++facet) {
+      const std::size_t start = kHeader + kFacet * facet + 12;  // behind the normal, which the corners give anyway
+      std::array<double, 9> places;
+      decode_numbers(kCoordinate, false, content.data() + start, 4, places.size(), places.data());
+      for (std::size_t i = 0; i < places.size(); ++i)
+        if (std::isinf(places[i]))
+          throw IoError(path, "byte " + std::to_string(start + 4 * i),
+                        "found " + to_text(places[i]) + " in facet " + std::to_string(facet) + " of " +
+                            std::to_string(facets) + ", expected a finite coordinate");
+      const auto place = [&](std::size_t i) { return static_cast<float>(places[i]); };
+      for (std::size_t i = 0; i < 9; i += 3) corners[corner++] = {place(i), place(i + 1), place(i + 2)};
+    }
+    welder.add(corners, 3 * (facet - first), vertices);
+    for (std::size_t i = first, corner = 0; i < facet; ++i)
+      for (Eigen::Index column = 0; column < 3; ++column)
+        mesh.triangles(static_cast<Eigen::Index>(i), column) = vertices[corner++];
   }
   mesh.vertices = welder.vertices();
   if (content.size() > binary_size(content))
@@ -168,10 +195,10 @@ class TextReader {
     bool lacks_end = false;
     reader_.need("the keyword solid");
     do {
-      if (!is_word(reader_.fields()[0], "solid")) refuse("the keyword solid");
+      if (!is_word(first_word(), "solid")) refuse("the keyword solid");
       while (true) {
         reader_.need("facet or endsolid");
-        if (is_word(reader_.fields()[0], "endsolid")) break;
+        if (is_word(first_word(), "endsolid")) break;
         read_facet();
       }
       lacks_end = reader_.lacks_end();
@@ -185,35 +212,44 @@ class TextReader {
   }
 
  private:
+  std::string_view first_word() {
+    const std::string_view word = reader_.take();
+    reader_.skip_letters(0);
+    return word;
+  }
+
   void read_facet() {
     // The normal is ignored: some writers put no numbers there for a facet without area.
-    if (!is_line({"facet", "normal"}, 3)) refuse("'facet normal NX NY NZ' or endsolid");
+    if (!is_facet()) refuse("'facet normal NX NY NZ' or endsolid");
     if (corners_.size() + 3 > static_cast<std::size_t>(kMaximumCount)) reader_.fail("more facets than can be counted");
-    need_line({"outer", "loop"});
+    need_line("outer loop");
     for (int corner = 0; corner < 3; ++corner) {
       reader_.need("'vertex X Y Z'");
-      if (!is_line({"vertex"}, 3)) refuse("'vertex X Y Z'");
-      const auto& fields = reader_.fields();
+      const bool is_vertex = is_word(reader_.take(), "vertex");
+      const std::array<std::string_view, 3> place = {reader_.take(), reader_.take(), reader_.take()};
+      if (!is_vertex || place[2].empty() || !reader_.take().empty()) refuse("'vertex X Y Z'");
       corners_.push_back(
-          welder_.add({reader_.coordinate(fields[1]), reader_.coordinate(fields[2]), reader_.coordinate(fields[3])}));
+          welder_.add({reader_.coordinate(place[0]), reader_.coordinate(place[1]), reader_.coordinate(place[2])}));
     }
-    need_line({"endloop"});
-    need_line({"endfacet"});
+    need_line("endloop");
+    need_line("endfacet");
   }
 
-  /// Whether the line holds these words, followed by `fields` more.
-  bool is_line(std::initializer_list<std::string_view> words, std::size_t more) {
-    const auto& fields = reader_.fields();
-    return fields.size() == words.size() + more &&
-           std::equal(words.begin(), words.end(), fields.begin(),
-                      [](auto word, auto field) { return is_word(field, word); });
+  /// Whether the line is 'facet normal' and three more words.
+  bool is_facet() {
+    bool is = is_word(reader_.take(), "facet") && is_word(reader_.take(), "normal");
+    for (int i = 0; i < 3; ++i) is = is && !reader_.take().empty();
+    return is && reader_.take().empty();
   }
 
-  void need_line(std::initializer_list<std::string_view> words) {
-    std::string wanted;
-    for (const std::string_view word : words) wanted += (wanted.empty() ? "" : " ") + std::string(word);
-    reader_.need("'" + wanted + "'");
-    if (!is_line(words, 0)) refuse("'" + wanted + "'");
+  /// The next line must hold these words: nearly always as they stand here.
+  void need_line(const char* words) {
+    if (reader_.next() && reader_.line() == words) return;
+    const std::string wanted = "'" + std::string(words) + "'";
+    if (reader_.line().empty()) reader_.fail_at_end(wanted);
+    std::string found;
+    for (const std::string_view field : reader_.fields()) (found += found.empty() ? "" : " ") += field;
+    if (!is_word(found, words)) refuse(wanted);
   }
 
   [[noreturn]] void refuse(const std::string& expected) {

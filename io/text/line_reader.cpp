@@ -74,12 +74,12 @@ bool LineReader::next() {
   return false;
 }
 
-void LineReader::need(const std::string& expected) {
+void LineReader::need(std::string_view expected) {
   if (!next()) fail_at_end(expected);
 }
 
-void LineReader::fail_at_end(const std::string& expected) const {
-  throw IoError(path_, "line " + std::to_string(number_ + 1), "the file ends here, expected " + expected);
+void LineReader::fail_at_end(std::string_view expected) const {
+  throw IoError(path_, "line " + std::to_string(number_ + 1), "the file ends here, expected " + std::string(expected));
 }
 
 std::string_view LineReader::take() {

@@ -25,8 +25,8 @@ class LineReader {
   /// Moves to the next line that is neither blank nor a comment; false at the end of the file.
   bool next();
   /// The same where a line must follow; `expected` describes it in the message.
-  void need(const std::string& expected);
-  [[noreturn]] void fail_at_end(const std::string& expected) const;  ///< what need() throws
+  void need(std::string_view expected);
+  [[noreturn]] void fail_at_end(std::string_view expected) const;  ///< what need() throws
 
   std::string_view line() const { return line_; }                    ///< without its end and white space around
   std::size_t line_number() const { return number_; }                ///< of line(), from 1

@@ -52,6 +52,8 @@ TEST(ReadFile, GivesEveryByte) {
   for (int i = 0; i < 200000; ++i) content += static_cast<char>(i % 256);
   EXPECT_EQ(read_file(put_text(folder / "bytes", content)), content);
   EXPECT_EQ(read_file(put_text(folder / "none", "")), "");
+  for (int i = 0; i < 5; ++i) content += content;  // several large pages
+  EXPECT_EQ(read_file(put_text(folder / "large", content)), content);
 }
 
 TEST(ReadFile, NamesWhatIsMissing) {
