@@ -81,7 +81,9 @@ void add_match_options(CLI::App& command, MatchSettings& settings) {
 
 void add_drop_stray(CLI::App& command, bool& drop_stray) {
   command
-      .add_flag("--drop-stray", drop_stray, "Leave out lone vertices, further than 20 median spacings from all others")
+      .add_flag("--drop-stray", drop_stray,
+                "Leave out stray vertices: alone, or up to three together, and further than 20 median spacings from "
+                "all others")
       ->group("Matching");
 }
 

@@ -59,8 +59,8 @@ std::string stray_warning(const PointSpacing& spacing) {
   const std::string which = count == 1 ? "stray point: vertex " + std::to_string(spacing.strays.front()) + " lies "
                                        : "stray points: vertex " + std::to_string(spacing.strays.front()) + " and " +
                                              std::to_string(count - 1) + " more lie up to ";
-  return which + three_digits(spacing.stray_distance / spacing.median) +
-         " times the median spacing from all others; pr is " + three_digits(spacing.resolution) + " with and " +
+  return which + three_digits(spacing.stray_distance / spacing.median) + " times the median spacing from " +
+         (count == 1 ? "all others" : "the rest") + "; pr is " + three_digits(spacing.resolution) + " with and " +
          three_digits(spacing.without_strays) + " without " + (count == 1 ? "it" : "them") +
          ": --drop-stray of 'match' and 'run' leaves " + (count == 1 ? "it" : "them") + " out, --resolution sets pr";
 }

@@ -148,7 +148,7 @@ StoredMesh parse_binary(const std::string& path, std::string_view content) {
                       " bytes with the header, but the file has " + std::to_string(content.size()));
   if (3 * facets > static_cast<std::uint64_t>(kMaximumCount))
     throw IoError(path, "byte " + std::to_string(kTitle), "more facets than can be counted");
-  constexpr std::size_t kBlock = 64;  // facets
+  constexpr std::size_t kBlock = 512;  // facets
   Welder<float> welder(static_cast<std::size_t>(facets));
   StoredMesh mesh;
   mesh.triangles.resize(static_cast<Eigen::Index>(facets), 3);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace corral::testing {
 namespace {
@@ -76,6 +77,53 @@ double reference_resolution(const Points& points) {
     sum += nearest;
   }
   return sum / static_cast<double>(distinct.size());
+}
+
+PointSpacing reference_spacing(const Points& points) {
+  std::vector<Eigen::Vector3d> places;
+  for (int row = 0; row < points.rows(); ++row)
+    if (std::find(places.begin(), places.end(), row_of(points, row)) == places.end())
+      places.push_back(row_of(points, row));
+  const auto distance = [&](std::size_t i, std::size_t j) { return (places[i] - places[j]).norm(); };
+  std::vector<double> nearest(places.size(), INFINITY);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = 0; j < places.size(); ++j)
+      if (j != i) nearest[i] = std::min(nearest[i], distance(i, j));
+  std::vector<double> sorted = nearest;
+  std::sort(sorted.begin(), sorted.end());
+  PointSpacing spacing;
+  spacing.resolution = reference_resolution(points);
+  spacing.median = sorted[sorted.size() / 2];
+  const double limit = 20 * spacing.median;
+  std::vector<std::size_t> part(places.size());  // the first place that steps within the limit lead to
+  std::iota(part.begin(), part.end(), 0U);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (distance(i, j) <= limit && part[i] != part[j])
+        std::replace(part.begin(), part.end(), std::max(part[i], part[j]), std::min(part[i], part[j]));
+  const auto size = [&](std::size_t i) { return std::count(part.begin(), part.end(), part[i]); };
+  const auto are_few = [&](std::ptrdiff_t strays) { return 50 * strays <= static_cast<std::ptrdiff_t>(places.size()); };
+  std::ptrdiff_t alone = 0, together = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) alone += size(i) == 1, together += size(i) <= 3;
+  const auto is_stray = [&](std::size_t i) { return size(i) == 1 || (are_few(together) && size(i) <= 3); };
+  double sum = 0;
+  std::ptrdiff_t others = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    double outside = INFINITY;
+    for (std::size_t j = 0; j < places.size(); ++j)
+      if (part[j] != part[i]) outside = std::min(outside, distance(i, j));
+    if (is_stray(i))
+      spacing.stray_distance = std::max(spacing.stray_distance, outside);
+    else
+      sum += nearest[i], ++others;
+  }
+  for (int row = 0; row < points.rows(); ++row)
+    if (is_stray(
+            static_cast<std::size_t>(std::find(places.begin(), places.end(), row_of(points, row)) - places.begin())))
+      spacing.strays.push_back(row);
+  const std::ptrdiff_t strays = static_cast<std::ptrdiff_t>(places.size()) - others;
+  spacing.without_strays = are_few(strays) ? sum / static_cast<double>(others) : spacing.resolution;
+  return spacing;
 }
 
 Eigen::Vector3d reference_plane_normal(const Points& points, const std::vector<Neighbor>& rows) {

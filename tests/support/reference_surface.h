@@ -9,6 +9,7 @@
 #include "kernel/surface/harris.h"
 #include "kernel/surface/mesh/mesh.h"
 #include "kernel/surface/search/neighborhood.h"
+#include "kernel/surface/search/resolution.h"
 
 namespace corral::testing {
 
@@ -23,6 +24,7 @@ Indices reference_nearest_rows(const Points& points, const Points& queries, doub
 
 /// Mean over the distinct points of the distance to the nearest other one.
 double reference_resolution(const Points& points);
+PointSpacing reference_spacing(const Points& points);
 
 /// Direction of least variance by a singular value decomposition; zero if there is none.
 Eigen::Vector3d reference_plane_normal(const Points& points, const std::vector<Neighbor>& rows);

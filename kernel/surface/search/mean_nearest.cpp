@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernel/error.h"
+#include "kernel/surface/search/far_groups.h"
 #include "kernel/surface/search/neighborhood.h"
 
 namespace corral {
@@ -32,7 +33,7 @@ double nearest_by_tree(const PointIndex& index, const Eigen::Vector3d& point, in
   }
 }
 
-/// Lone vertices are further than this from all others, in medians of all distances.
+/// Strays are further than this from all others, in medians of all distances.
 constexpr double kStrayMedians = 20;
 
 double median_of_distinct(const PointGrid& grid, const AlignedColumn& squares) {
@@ -50,23 +51,34 @@ void tell_strays(const PointGrid& grid, const AlignedColumn& squares, double lar
   constexpr double kFew = 0.02;
   spacing.without_strays = spacing.resolution;
   const double limit = kStrayMedians * spacing.median;
-  if (!(largest > limit * limit)) return;
-  double sum = 0;  // in the order of the slots, which does not depend on the threads
-  int others = 0, places = 0;
-  bool is_stray = false;
+  int places = 0, strays = 0;
   for (std::size_t slot = 0; slot < static_cast<std::size_t>(grid.size()); ++slot) {
-    const bool repeats = is_duplicate(grid, slot);
-    if (!repeats) is_stray = squares[slot] > limit * limit;
-    if (is_stray) spacing.strays.push_back(grid.row(static_cast<int>(slot)));
-    if (repeats) continue;
-    if (is_stray)
-      ++places;
-    else
-      sum += std::sqrt(squares[slot]), ++others;
+    if (is_duplicate(grid, slot)) continue;
+    ++places;
+    strays += squares[slot] > limit * limit;
+  }
+  const int few = static_cast<int>(kFew * places);
+  const FarGroups groups = far_groups(grid, squares, limit, few - strays);
+  if (strays > 0) spacing.stray_distance = std::sqrt(largest);
+  spacing.stray_distance = std::max(spacing.stray_distance, groups.distance);
+  strays += static_cast<int>(groups.slots.size());
+  if (strays == 0) return;
+  double sum = 0;  // in the order of the slots, which does not depend on the threads
+  bool is_stray = false;
+  auto grouped = groups.slots.begin();
+  for (int slot = 0; slot < grid.size(); ++slot) {
+    const auto i = static_cast<std::size_t>(slot);
+    const bool repeats = is_duplicate(grid, i);
+    if (!repeats) {
+      const bool is_grouped = grouped != groups.slots.end() && *grouped == slot;
+      grouped += is_grouped;
+      is_stray = is_grouped || squares[i] > limit * limit;
+    }
+    if (is_stray) spacing.strays.push_back(grid.row(slot));
+    if (!repeats && !is_stray) sum += std::sqrt(squares[i]);
   }
   std::sort(spacing.strays.begin(), spacing.strays.end());
-  spacing.stray_distance = std::sqrt(largest);
-  if (places <= kFew * (places + others)) spacing.without_strays = sum / others;
+  if (strays <= few) spacing.without_strays = sum / (places - strays);
 }
 
 }  // namespace

@@ -7,12 +7,14 @@
 namespace corral {
 
 /// The distances of the vertices of a surface to their nearest others. Exact duplicates of a vertex count once.
+/// Strays lie alone, or where all strays are few two or three beside each other: joined by steps of at most 20 medians, and
+/// further than that from all others. Such a group moves pr little, but is no part of the surface.
 struct PointSpacing {
   double resolution = 0;      ///< their mean: pr, mesh units
   double median = 0;          ///< mesh units
-  Indices strays = {};        ///< the vertices further than 20 medians from all others, ascending
+  Indices strays = {};        ///< the vertices further than 20 medians from all others, ascending; see below
   double without_strays = 0;  ///< the mean without strays if these are few, at most 2 in 100; else the mean, mesh units
-  double stray_distance = 0;  ///< the largest of a stray, mesh units
+  double stray_distance = 0;  ///< the largest of a stray to all others, mesh units
 
   /// Whether a few lone vertices decide on pr: they change it by more than 5 %. On surfaces of uneven density, such as CAD
   /// models, many vertices are far from all others.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/error.h"
+#include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/reference_surface.h"
@@ -56,6 +57,48 @@ TEST(PointSpacing, HasTheMedianAndTheStrays) {
     EXPECT_NEAR(moved.resolution, (898 + 4500) / 899.0, 1e-9);
     EXPECT_TRUE(moved.is_moved_by_strays());
   }
+}
+
+TEST(PointSpacing, StraysMayLieBesideEachOther) {
+  Points points = testing::grid(30, 30, 1.0).vertices;
+  points.row(17) << 15, 15, 4500;
+  points.row(40) << 15, 19, 4500;
+  points.row(41) << 15, 19, 4500;
+  points.row(600) << 15, 15, 4504;
+  const PointSpacing spacing = point_spacing(points);
+  EXPECT_EQ(spacing.strays, (Indices{17, 40, 41, 600}));
+  EXPECT_DOUBLE_EQ(spacing.without_strays, 1);
+  EXPECT_DOUBLE_EQ(spacing.stray_distance, 4504);
+  EXPECT_FALSE(spacing.is_moved_by_strays());  // three distances of 4 among 896
+  points.row(700) << 15, 30, 4504;             // four together are a part of their own
+  EXPECT_TRUE(point_spacing(points).strays.empty());
+}
+
+TEST(PointSpacing, IsThatOfAllPairs) {
+  RandomStream random(8);
+  int alone = 0, together = 0;
+  for (int round = 0; round < 40 && !HasFailure(); ++round) {
+    SCOPED_TRACE(round);
+    Points points = testing::bumpy_sphere(3, static_cast<std::uint64_t>(round)).vertices;
+    const auto any_row = [&] {
+      return static_cast<Eigen::Index>(random.below(static_cast<std::uint64_t>(points.rows())));
+    };
+    for (auto groups = random.below(6); groups > 0; --groups) {
+      const Eigen::RowVector3d place = (1.5 + 20 * random.uniform()) * random.direction().transpose();
+      for (auto size = 1 + random.below(5); size > 0; --size)
+        points.row(any_row()) = place + 1.2 * random.uniform() * random.direction().transpose();
+    }
+    if (round % 3 == 0) points.row(any_row()) = points.row(any_row()).eval();
+    const PointSpacing found = point_spacing(points), expected = testing::reference_spacing(points);
+    EXPECT_EQ(found.strays, expected.strays);
+    EXPECT_NEAR(found.without_strays, expected.without_strays, 1e-12 * expected.without_strays);
+    EXPECT_NEAR(found.stray_distance, expected.stray_distance, 1e-12);
+    EXPECT_DOUBLE_EQ(found.median, expected.median);
+    alone += expected.strays.size() == 1;
+    together += expected.strays.size() > 1;
+  }
+  EXPECT_GT(alone, 1);
+  EXPECT_GT(together, 10);
 }
 
 TEST(PointSpacing, ManyFarVerticesAreNoStrays) {

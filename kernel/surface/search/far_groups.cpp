@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "kernel/surface/search/far_groups.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/surface/search/neighborhood.h"
+
+namespace corral {
+namespace {
+
+constexpr int kMostTogether = 3;
+
+/// Looks cell by cell for places that may have fewer than kMostTogether others within the limit.
+class Search {
+ public:
+  Search(const PointGrid& grid, const AlignedColumn& squares, double limit)
+      : grid_(grid), squares_(squares), squared_limit_(limit * limit) {
+    constexpr double kDiagonal = 1.75;  // of a cube, rounded up
+    const double diagonal = kDiagonal * grid.cell_side();
+    CellSweep sweep(grid, 1);
+    std::vector<SlotRange> ranges;
+    for (int cell = 0; cell < grid.cells(); ++cell) {
+      const SlotRange own{grid.begin(cell), grid.end(cell)};
+      if (diagonal <= limit && has_many({own})) continue;
+      ranges.clear();
+      sweep.around(cell, ranges);
+      if (2 * diagonal <= limit && has_many(ranges)) continue;
+      for (int slot = own.begin; slot < own.end; ++slot)
+        if (is_first(slot) && at(squares_, slot) <= squared_limit_ && !has_many_near(slot, own)) found_.push_back(slot);
+    }
+  }
+
+  const std::vector<int>& found() const { return found_; }
+  bool is_first(int slot) const { return slot == 0 || !are_equal(slot, slot - 1); }
+  Eigen::RowVector3d place(int slot) const { return {at(grid_.x(), slot), at(grid_.y(), slot), at(grid_.z(), slot)}; }
+
+ private:
+  static double at(const AlignedColumn& column, int slot) { return column[static_cast<std::size_t>(slot)]; }
+  bool are_equal(int a, int b) const {
+    return at(grid_.x(), a) == at(grid_.x(), b) && at(grid_.y(), a) == at(grid_.y(), b) &&
+           at(grid_.z(), a) == at(grid_.z(), b);
+  }
+
+  bool has_many(const std::vector<SlotRange>& ranges) const {
+    int places = 0;
+    for (const SlotRange& range : ranges)
+      for (int slot = range.begin; slot < range.end && places <= kMostTogether; ++slot) places += is_first(slot);
+    return places > kMostTogether;
+  }
+
+  bool has_many_near(int slot, const SlotRange& own) const {
+    int near = 0;
+    for (int other = own.begin; other < own.end && near <= kMostTogether; ++other)
+      near += is_first(other) && (place(other) - place(slot)).squaredNorm() <= squared_limit_;
+    return near > kMostTogether;
+  }
+
+  const PointGrid& grid_;
+  const AlignedColumn& squares_;
+  const double squared_limit_;
+  std::vector<int> found_;
+};
+
+/// The group of a place, by rows of the index, or nothing if it has too many.
+std::vector<int> group_of(int row, const PointIndex& index, const Points& places, double squared_limit) {
+  std::vector<int> group{row};
+  for (std::size_t next = 0; next < group.size(); ++next)
+    for (const Neighbor& neighbor : index.nearest(places.row(group[next]).transpose(), kMostTogether + 1)) {
+      if (!(neighbor.squared_distance <= squared_limit)) break;
+      if (std::find(group.begin(), group.end(), neighbor.index) != group.end()) continue;
+      group.push_back(neighbor.index);
+      if (group.size() > kMostTogether) return {};
+    }
+  return group;
+}
+
+double distance_from_group(int row, const std::vector<int>& group, const PointIndex& index, const Points& places) {
+  for (const Neighbor& neighbor : index.nearest(places.row(row).transpose(), static_cast<int>(group.size()) + 1))
+    if (std::find(group.begin(), group.end(), neighbor.index) == group.end())
+      return std::sqrt(neighbor.squared_distance);
+  return 0;
+}
+
+}  // namespace
+
+FarGroups far_groups(const PointGrid& grid, const AlignedColumn& squares, double limit, int most) {
+  FarGroups groups;
+  if (most < 2) return groups;
+  const Search search(grid, squares, limit);
+  if (search.found().empty()) return groups;
+  std::vector<int> firsts;
+  for (int slot = 0; slot < grid.size(); ++slot)
+    if (search.is_first(slot)) firsts.push_back(slot);
+  Points places(static_cast<Eigen::Index>(firsts.size()), 3);
+  for (std::size_t row = 0; row < firsts.size(); ++row)
+    places.row(static_cast<Eigen::Index>(row)) = search.place(firsts[row]);
+  const PointIndex index(places);
+  for (const int slot : search.found()) {
+    const int row = static_cast<int>(std::lower_bound(firsts.begin(), firsts.end(), slot) - firsts.begin());
+    const std::vector<int> group = group_of(row, index, places, limit * limit);
+    if (group.empty()) continue;
+    groups.slots.push_back(slot);
+    if (static_cast<int>(groups.slots.size()) > most) return {};
+    groups.distance = std::max(groups.distance, distance_from_group(row, group, index, places));
+  }
+  return groups;
+}
+
+}  // namespace corral
