@@ -18,17 +18,30 @@ class Search {
       : grid_(grid), squares_(squares), squared_limit_(limit * limit) {
     constexpr double kDiagonal = 1.75;  // of a cube, rounded up
     const double diagonal = kDiagonal * grid.cell_side();
-    CellSweep sweep(grid, 1);
+    // All places in the cells up to `reach` from its own are within the limit of a place.
+    const int reach = static_cast<int>(std::min(limit / diagonal, 1.0 + PointGrid::kLargestReach)) - 1;
+    CellSweep next_cells(grid, 1), cells_within(grid, std::max(reach, 1));
     std::vector<SlotRange> ranges;
-    for (int cell = 0; cell < grid.cells(); ++cell) {
-      const SlotRange own{grid.begin(cell), grid.end(cell)};
-      if (diagonal <= limit && has_many({own})) continue;
+    const auto many_around = [&](CellSweep& sweep, int cell) {
       ranges.clear();
       sweep.around(cell, ranges);
-      if (2 * diagonal <= limit && has_many(ranges)) continue;
+      return has_many(ranges);
+    };
+    for (int cell = 0; cell < grid.cells(); ++cell) {
+      const SlotRange own{grid.begin(cell), grid.end(cell)};
+      if (reach >= 0 && has_many({own})) continue;
+      if (reach >= 1 && (many_around(next_cells, cell) || many_around(cells_within, cell))) continue;
       for (int slot = own.begin; slot < own.end; ++slot)
         if (is_first(slot) && at(squares_, slot) <= squared_limit_ && !has_many_near(slot, own)) found_.push_back(slot);
     }
+  }
+
+  /// Leaves out those that have others, as far as it takes no longer than to build a tree.
+  void look_at_all() {
+    constexpr double kMostWork = 1e7;  // distances
+    if (static_cast<double>(found_.size()) * grid_.size() > kMostWork) return;
+    const auto has_others = [&](int slot) { return has_many_near(slot, {0, grid_.size()}); };
+    found_.erase(std::remove_if(found_.begin(), found_.end(), has_others), found_.end());
   }
 
   const std::vector<int>& found() const { return found_; }
@@ -87,7 +100,8 @@ double distance_from_group(int row, const std::vector<int>& group, const PointIn
 FarGroups far_groups(const PointGrid& grid, const AlignedColumn& squares, double limit, int most) {
   FarGroups groups;
   if (most < 2) return groups;
-  const Search search(grid, squares, limit);
+  Search search(grid, squares, limit);
+  search.look_at_all();
   if (search.found().empty()) return groups;
   std::vector<int> firsts;
   for (int slot = 0; slot < grid.size(); ++slot)
