@@ -47,21 +47,27 @@ Indices sides_across(const Triangles& triangles, Eigen::Index vertices) {
   Indices last(static_cast<std::size_t>(vertices), kNoSide), across(index(ends.count()));
   for (int side = 0; side < ends.count(); ++side)
     across[index(side)] = std::exchange(last[index(ends.low(side))], side);
-  std::vector<std::pair<int, int>> chain;  // the higher vertex, the side
-  for (const int first : last) {
-    chain.clear();
-    for (int side = first; side != kNoSide; side = across[index(side)]) chain.emplace_back(ends.high(side), side);
-    std::sort(chain.begin(), chain.end());
-    for (auto group = chain.begin(); group != chain.end();) {
-      auto behind = group + 1;
-      while (behind != chain.end() && behind->first == group->first) ++behind;
-      for (auto side = group; side != behind; ++side)
-        across[index(side->second)] = behind - group > 2    ? kManySides
-                                      : behind - group == 1 ? kNoSide
-                                                            : group[side == group].second;
-      group = behind;
+  struct Met {
+    int low, side;  // the last lower vertex of a chain that has a side to this higher one, and the first such side
+  };
+  std::vector<Met> met(last.size(), Met{kNoSide, kNoSide});
+  for (int low = 0; low < static_cast<int>(vertices); ++low)
+    for (int side = last[index(low)], next; side != kNoSide; side = next) {
+      next = std::exchange(across[index(side)], kNoSide);
+      Met& before = met[index(ends.high(side))];
+      if (before.low != low) {
+        before = {low, side};
+        continue;
+      }
+      const int other = across[index(before.side)];
+      if (other == kNoSide) {
+        across[index(side)] = before.side;
+        across[index(before.side)] = side;
+        continue;
+      }
+      if (other >= 0) across[index(other)] = across[index(before.side)] = kManySides;
+      across[index(side)] = kManySides;
     }
-  }
   return across;
 }
 
