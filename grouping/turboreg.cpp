@@ -9,7 +9,7 @@
 
 #include "grouping/columns/canonical_order.h"
 #include "grouping/columns/compatibility.h"
-#include "grouping/graph/bit_graph.h"
+#include "grouping/graph/common_neighbors.h"
 #include "grouping/pose/pose_choice.h"
 #include "kernel/triangle_fit.h"
 
@@ -44,11 +44,19 @@ bool is_better(const Third& a, const Third& b) {
   return std::tie(b.common, a.difference, a.k) < std::tie(a.common, b.difference, b.k);
 }
 
-Indices degrees_of(const BitGraph& graph) {
-  Indices degrees;
-  degrees.reserve(static_cast<std::size_t>(graph.size()));
-  for (int node = 0; node < graph.size(); ++node) degrees.push_back(graph.degree(node));
-  return degrees;
+constexpr int kRowsPerSampled = 16, kMostSampled = 512;
+
+/// Rows that are an edge to many others first: by a sample, which decides about nothing but time.
+Indices connected_first(const CorrespondenceSet& matches, const TurboregOptions& options) {
+  const Indices degrees =
+      sampled_degrees(matches, options.edge_pr * matches.resolution, options.min_length_pr * matches.resolution,
+                      std::min(matches.size() / kRowsPerSampled, kMostSampled));
+  Indices rows(degrees.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  std::stable_sort(rows.begin(), rows.end(), [&](int a, int b) {
+    return degrees[static_cast<std::size_t>(a)] > degrees[static_cast<std::size_t>(b)];
+  });
+  return rows;
 }
 
 /// Room for the first edges and for candidates.
@@ -59,44 +67,44 @@ std::size_t pivots_held(double rows, int pivots) {
 class Triangles {
  public:
   Triangles(const CorrespondenceSet& matches, const TurboregOptions& options)
-      : matches_(matches),
-        graph_(consistency_graph(matches, options.edge_pr * matches.resolution,
+      : names_(connected_first(matches, options)),
+        matches_(select_rows(matches, names_)),
+        graph_(consistency_graph(matches_, options.edge_pr * matches.resolution,
                                  options.min_length_pr * matches.resolution)),
-        degrees_(degrees_of(graph_)),
-        counts_(static_cast<std::size_t>(matches.size())),
-        of_node_(counts_.size()) {
-    others_.reserve(counts_.size());
+        common_(graph_) {
     find_pivots(static_cast<std::size_t>(options.pivots));
     add_triangles();
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
   }
 
+  /// Of rows of the table, ascending.
   const std::vector<Triangle>& operator()() const { return found_; }
 
  private:
-  /// The first `count` edges, in any order. Nodes of the highest degree come first: an edge has fewer common neighbours than
-  /// either of its nodes has neighbours, so that most edges need not be counted once the best are known.
+  /// The first `count` edges, in any order. An edge has fewer common neighbours than either of its nodes has neighbours: where
+  /// nodes of high degree stand in front, those behind need not be counted once the best are known.
   void find_pivots(std::size_t count) {
     const std::size_t held = pivots_held(matches_.size(), static_cast<int>(count));
     pivots_.reserve(held);
-    const auto is_later = [&](int a, int b) { return std::make_pair(-degree(a), a) > std::make_pair(-degree(b), b); };
-    Indices nodes(degrees_.size());
-    std::iota(nodes.begin(), nodes.end(), 0);
-    std::sort(nodes.begin(), nodes.end(), [&](int a, int b) { return is_later(b, a); });
-    int fewest = 1;  // with less an edge is not among the first
-    for (const int i : nodes) {
-      if (degree(i) <= fewest) break;
-      others_.clear();
-      graph_.for_neighbors(i, [&](int j) {
-        if (is_later(j, i) && degree(j) > fewest) others_.push_back(j);
-      });
-      graph_.count_common(i, others_, counts_.data());
-      for (std::size_t k = 0; k < others_.size(); ++k) {
-        if (counts_[k] < fewest) continue;
-        const auto [first, last] = std::minmax(i, others_[k]);
-        pivots_.push_back({counts_[k], first, last, difference_of_lengths(matches_, first, last)});
-        if (pivots_.size() == held && held > count) fewest = keep_first(count);
+    std::vector<BitGraph::Word> found;
+    int fewest = 1, end = graph_.size();  // with less an edge is not among the first; no node from `end` on has more
+    for (int i = 0; i < end; ++i) {
+      while (end > i && common_.degree(end - 1) <= fewest) --end;
+      if (common_.degree(i) <= fewest) continue;
+      const int first = i / 64, last = (end + 63) / 64;
+      const std::vector<int>& counts = common_.count(i, first, last);
+      common_.find(fewest, found);
+      found[0] &= ~((BitGraph::Word{2} << (i & 63)) - 1);
+      for (int word = first; word < last; ++word) {
+        const BitGraph::Word edges = found[static_cast<std::size_t>(word - first)] & graph_.neighbors(i)[word];
+        BitGraph::for_bits(&edges, 1, [&](int bit) {
+          const int j = 64 * word + bit, shared = counts[static_cast<std::size_t>(j - 64 * first)];
+          if (shared < fewest) return;
+          const bool in_order = name(i) < name(j);
+          pivots_.push_back({shared, in_order ? i : j, in_order ? j : i, difference_of_lengths(matches_, i, j)});
+          if (pivots_.size() == held && held > count) fewest = keep_first(count);
+        });
       }
     }
     if (pivots_.size() > count) keep_first(count);
@@ -105,65 +113,59 @@ class Triangles {
 
   int keep_first(std::size_t count) {
     const auto last = pivots_.begin() + static_cast<std::ptrdiff_t>(count - 1);
-    std::nth_element(pivots_.begin(), last, pivots_.end(), comes_first);
+    std::nth_element(pivots_.begin(), last, pivots_.end(),
+                     [&](const Pivot& a, const Pivot& b) { return comes_first(named(a), named(b)); });
     pivots_.resize(count);
     return pivots_.back().common;
   }
+  Pivot named(const Pivot& pivot) const { return {pivot.common, name(pivot.i), name(pivot.j), pivot.difference}; }
 
   /// One node after the other, so that its common neighbours with all others are counted once.
   void add_triangles() {
     const auto by_nodes = [](const Pivot& a, const Pivot& b) { return std::tie(a.i, a.j) < std::tie(b.i, b.j); };
     std::sort(pivots_.begin(), pivots_.end(), by_nodes);
+    std::vector<int> of_node;
     int node = -1;
     for (const Pivot& pivot : pivots_) {
-      if (pivot.i != node) count_common_of(node = pivot.i);
-      add_triangles_on(pivot);
+      if (pivot.i != node) of_node = common_.count(node = pivot.i, 0, graph_.words());
+      add_triangles_on(pivot, of_node);
     }
   }
 
-  void count_common_of(int node) {
-    others_.clear();
-    graph_.for_neighbors(node, [&](int j) { others_.push_back(j); });
-    graph_.count_common(node, others_, counts_.data());
-    for (std::size_t n = 0; n < others_.size(); ++n) of_node_[static_cast<std::size_t>(others_[n])] = counts_[n];
-  }
-
-  void add_triangles_on(const Pivot& pivot) {
-    others_.clear();
+  /// `of_node` counts the common neighbours of its first node and all others.
+  void add_triangles_on(const Pivot& pivot, const std::vector<int>& of_node) {
+    const std::vector<int>& of_other = common_.count(pivot.j, 0, graph_.words());
     const BitGraph::Word *a = graph_.neighbors(pivot.i), *b = graph_.neighbors(pivot.j);
-    for (int word = 0; word < graph_.words(); ++word) {
-      const BitGraph::Word both = a[word] & b[word];
-      BitGraph::for_bits(&both, 1, [&](int place) { others_.push_back(64 * word + place); });
-    }
-    graph_.count_common(pivot.j, others_, counts_.data());
     std::array<Third, kThirds + 1> best;  // and one that goes
     std::size_t held = 0;
-    for (std::size_t n = 0; n < others_.size(); ++n) {
-      const int k = others_[n], common = of_node_[static_cast<std::size_t>(k)] + counts_[n];
-      if (held == kThirds && common < best[kThirds - 1].common) continue;
-      const double difference =
-          std::max(difference_of_lengths(matches_, pivot.i, k), difference_of_lengths(matches_, pivot.j, k));
-      best[held] = {common, k, difference};
-      for (std::size_t place = held; place > 0 && is_better(best[place], best[place - 1]); --place)
-        std::swap(best[place], best[place - 1]);
-      held = std::min(held + 1, kThirds);
+    for (int word = 0; word < graph_.words(); ++word) {
+      const BitGraph::Word both = a[word] & b[word];
+      BitGraph::for_bits(&both, 1, [&](int bit) {
+        const int k = 64 * word + bit;
+        const int common = of_node[static_cast<std::size_t>(k)] + of_other[static_cast<std::size_t>(k)];
+        if (held == kThirds && common < best[kThirds - 1].common) return;
+        const double difference =
+            std::max(difference_of_lengths(matches_, pivot.i, k), difference_of_lengths(matches_, pivot.j, k));
+        best[held] = {common, name(k), difference};
+        for (std::size_t place = held; place > 0 && is_better(best[place], best[place - 1]); --place)
+          std::swap(best[place], best[place - 1]);
+        held = std::min(held + 1, kThirds);
+      });
     }
     for (std::size_t n = 0; n < held; ++n) {
-      Triangle corners{pivot.i, pivot.j, best[n].k};
+      Triangle corners{name(pivot.i), name(pivot.j), best[n].k};
       std::sort(corners.begin(), corners.end());
       found_.push_back(corners);
     }
   }
 
-  int degree(int node) const { return degrees_[static_cast<std::size_t>(node)]; }
+  int name(int node) const { return names_[static_cast<std::size_t>(node)]; }
 
-  const CorrespondenceSet& matches_;
+  const Indices names_;  ///< rows of the caller's table
+  const CorrespondenceSet matches_;
   const BitGraph graph_;
-  const Indices degrees_;
-  Indices others_;
-  std::vector<int> counts_;   ///< of common neighbours, with others_
-  std::vector<int> of_node_;  ///< of common neighbours of the first node of a pivot and each of its neighbours
-  std::vector<Pivot> pivots_;
+  CommonNeighbors common_;
+  std::vector<Pivot> pivots_;  ///< i and j are nodes, that of the smaller name first
   std::vector<Triangle> found_;
 };
 
@@ -202,8 +204,9 @@ GroupingResult group_by_turboreg(const CorrespondenceSet& matches, const Turbore
 
 double working_memory(int matches, const TurboregOptions& options) {
   const double pivots = static_cast<double>(pivots_held(matches, options.pivots));
-  return canonical_order_memory(matches) + BitGraph::memory(matches) + 24.0 * matches + pivots * sizeof(Pivot) +
-         std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
+  // Names, sampled degrees and two lists of counts; strips of the graph while it is made, then counts of neighbours.
+  return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + CommonNeighbors::memory(matches) +
+         80.0 * matches + pivots * sizeof(Pivot) + std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
          PoseChoice::memory(matches, std::min(pivots, 1.0 * options.pivots) * kThirds, rule_of(options));
 }
 

@@ -43,7 +43,8 @@ struct TurboregOptions {
 /// Source    [yan2025turboreg]; the form is that of its program.
 /// Reads     source_points, target_points, resolution.
 /// Returns   selected, the pose, and `keep` runners-up.
-/// Cost      O(E M / 64) for E edges and O(pivots M^2 / 64) at most, M^2 / 8 bytes. Deterministic.
+/// Cost      O(M^2) for the edges. O(s M / 64) for each row whose edges can be pivots and each end of a pivot, s the smaller of its number of
+///           neighbours and of what they differ in from the well connected rows (common_neighbors.h). M^2 / 8 bytes. Deterministic.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
 /// Departs   All rows are used, not the first thousands, and a third corner may lie before the edge in the table: the answer is that
 ///           of the set of rows (canonical_order.h). A triangle counts once. A triangle of at most 1e-3 pr^2 on either side

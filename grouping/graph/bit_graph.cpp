@@ -3,6 +3,7 @@
 
 #include <hwy/base.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "grouping/columns/compatibility.h"
@@ -70,11 +71,11 @@ struct Lengths {
   }
 };
 
-/// The bits of the row itself and of those behind it; what is before is not set.
-HWY_FLATTEN void compare_behind(const CorrespondenceSet& matches, int row, double tolerance, double shortest,
-                                std::uint64_t* words) {
+/// The bits of the rows from `start`, a multiple of 64, on; that of the row itself may be set.
+HWY_FLATTEN void compare_from(const CorrespondenceSet& matches, int row, int start, double tolerance, double shortest,
+                              std::uint64_t* words) {
   const Lengths lengths{matches, row};
-  for (int first = row & ~63; first < matches.size(); first += 64) {
+  for (int first = start; first < matches.size(); first += 64) {
     std::uint64_t word = 0;
     for (int j = first; j < first + 64 && j < matches.size(); j += kLanes) {
       if (j + kLanes <= matches.size())
@@ -84,7 +85,6 @@ HWY_FLATTEN void compare_behind(const CorrespondenceSet& matches, int row, doubl
     }
     words[first / 64] = word;
   }
-  words[row >> 6] &= ~((std::uint64_t{2} << (row & 63)) - 1);
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ HWY_AFTER_NAMESPACE();
 namespace corral {
 
 HWY_EXPORT(count_common);
-HWY_EXPORT(compare_behind);
+HWY_EXPORT(compare_from);
 
 int BitGraph::degree(int node) const {
   int count = 0;
@@ -107,17 +107,58 @@ void BitGraph::count_common(int node, const Indices& others, int* counts) const 
   HWY_DYNAMIC_DISPATCH(count_common)(*this, node, others, counts);
 }
 
+namespace {
+
+/// Exchanges rows and columns of 64 x 64 bits: of ever smaller blocks those beside the diagonal.
+void transpose(BitGraph::Word (&block)[64]) {
+  BitGraph::Word mask = 0x00000000FFFFFFFF;
+  for (int side = 32; side > 0; side /= 2, mask ^= mask << side)
+    for (int row = 0; row < 64; row = (row + side + 1) & ~side) {
+      const BitGraph::Word moved = (block[row] >> side ^ block[row + side]) & mask;
+      block[row] ^= moved << side;
+      block[row + side] ^= moved;
+    }
+}
+
+}  // namespace
+
+/// In strips of 64 rows, of which whole blocks are mirrored.
 BitGraph consistency_graph(const CorrespondenceSet& matches, double tolerance, double shortest) {
   BitGraph graph(matches.size());
-  std::vector<BitGraph::Word> behind(static_cast<std::size_t>(graph.words()));
-  for (int row = 0; row < graph.size(); ++row) {
-    HWY_DYNAMIC_DISPATCH(compare_behind)(matches, row, tolerance, shortest, behind.data());
-    for (int word = row >> 6; word < graph.words(); ++word)
-      graph.bits_[graph.start(row) + static_cast<std::size_t>(word)] |= behind[static_cast<std::size_t>(word)];
-    BitGraph::for_bits(behind.data() + (row >> 6), graph.words() - (row >> 6),
-                       [&](int place) { graph.set((row & ~63) + place, row); });
+  const auto words = static_cast<std::size_t>(graph.words());
+  std::vector<BitGraph::Word> strip(64 * words);
+  for (int first = 0; first < graph.size(); first += 64) {
+    const int rows = std::min(64, graph.size() - first);
+    std::fill(strip.begin(), strip.end(), 0);
+    for (int row = 0; row < rows; ++row) {
+      BitGraph::Word* const of_row = &strip[static_cast<std::size_t>(row) * words];
+      HWY_DYNAMIC_DISPATCH(compare_from)(matches, first + row, first, tolerance, shortest, of_row);
+      of_row[first / 64] &= ~(BitGraph::Word{1} << row);
+    }
+    const auto diagonal = static_cast<std::size_t>(first / 64);
+    for (std::size_t word = diagonal; word < words; ++word) {
+      BitGraph::Word block[64];
+      for (std::size_t row = 0; row < 64; ++row) block[row] = strip[row * words + word];
+      for (int row = 0; row < rows; ++row) graph.bits_[graph.start(first + row) + word] = block[row];
+      transpose(block);
+      const int behind = static_cast<int>(64 * word);
+      for (int row = 0; row < 64 && behind + row < graph.size(); ++row)
+        graph.bits_[graph.start(behind + row) + diagonal] |= block[row];
+    }
   }
   return graph;
+}
+
+Indices sampled_degrees(const CorrespondenceSet& matches, double tolerance, double shortest, int sample) {
+  Indices degrees(static_cast<std::size_t>(matches.size()));
+  std::vector<BitGraph::Word> near((degrees.size() + 63) / 64);
+  for (int k = 0; k < sample; ++k) {
+    const auto row = static_cast<int>(std::int64_t{k} * matches.size() / sample);
+    HWY_DYNAMIC_DISPATCH(compare_from)(matches, row, 0, tolerance, shortest, near.data());
+    BitGraph::for_bits(near.data(), static_cast<int>(near.size()),
+                       [&](int other) { ++degrees[static_cast<std::size_t>(other)]; });
+  }
+  return degrees;
 }
 
 }  // namespace corral

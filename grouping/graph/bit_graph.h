@@ -46,6 +46,7 @@ class BitGraph {
 
  private:
   friend BitGraph consistency_graph(const CorrespondenceSet&, double, double);
+  friend class InducedSubgraphs;
   /// The place of the lowest bit that is set, by a de Bruijn sequence: all 64 windows of six bits of it differ.
   static int lowest(Word word) {
     constexpr std::uint8_t kPlaces[64] = {0,  1,  2,  53, 3,  7,  54, 27, 4,  38, 41, 8,  34, 55, 48, 28,
@@ -68,5 +69,8 @@ class BitGraph {
 ///
 /// Cost      O(M^2) time.
 BitGraph consistency_graph(const CorrespondenceSet& matches, double tolerance, double shortest = -1);
+
+/// To how many of `sample` rows at even steps each row is an edge of that graph, itself perhaps among them.
+Indices sampled_degrees(const CorrespondenceSet& matches, double tolerance, double shortest, int sample);
 
 }  // namespace corral

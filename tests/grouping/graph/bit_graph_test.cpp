@@ -65,5 +65,20 @@ TEST(ConsistencyGraph, IsThatOfThePlainForm) {
     }
 }
 
+TEST(SampledDegrees, CountTheRowsAtEvenSteps) {
+  for (const int rows : {1, 64, 65, 300}) {
+    const CorrespondenceSet table = testing::harsh_table(rows, 0.4, 7);
+    const Indices degrees = sampled_degrees(table, 2, 40, 3);
+    for (int j = 0; j < rows; ++j) {
+      int expected = 0;
+      for (const int i : {0, rows / 3, 2 * rows / 3}) {
+        const PairDistances lengths = pair_distances(table, i, j);
+        expected += std::abs(lengths.source - lengths.target) < 2 && lengths.source + lengths.target > 40;
+      }
+      EXPECT_EQ(degrees[static_cast<std::size_t>(j)], expected) << j;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace corral
