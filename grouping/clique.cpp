@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
-#include <optional>
 
 #include "grouping/columns/canonical_order.h"
 #include "grouping/columns/compatibility.h"
@@ -41,6 +41,70 @@ void disconnect_shared(const Points& points, BitGraph& graph) {
     for (auto other = first + 1; other != order.end() && share_point(points, *first, *other); ++other)
       graph.disconnect(*first, *other);
 }
+
+/// The sums of | |p_i - p_j| - |p'_i - p'_j| | over the pairs of two sets of rows, compared.
+class Tightness {
+ public:
+  /// No difference is `largest` or more.
+  Tightness(const CorrespondenceSet& matches, double largest) : matches_(matches), largest_(largest) {}
+
+  /// Whether the sum of one set, added up in its order, is smaller than that of the other; of equal sums the set that comes first. Sets
+  /// that have most of their rows in common are told apart by the others, if that is certain.
+  bool is_first(const Indices& rows, const Indices& others) {
+    Indices shared, only, only_other;
+    std::set_intersection(rows.begin(), rows.end(), others.begin(), others.end(), std::back_inserter(shared));
+    std::set_difference(rows.begin(), rows.end(), shared.begin(), shared.end(), std::back_inserter(only));
+    std::set_difference(others.begin(), others.end(), shared.begin(), shared.end(), std::back_inserter(only_other));
+    if (kFewDiffer * (only.size() + only_other.size()) < shared.size()) {
+      const double sum = sum_with(only, shared), other = sum_with(only_other, shared);
+      if (std::abs(sum - other) > error(rows.size()) + error(others.size())) return sum < other;
+    }
+    if (others != last_) last_sum_ = add_up(last_ = others, others.size());
+    const double sum = add_up(rows, rows.size());
+    if (!(sum < last_sum_ || (sum == last_sum_ && rows < others))) return false;
+    last_ = rows, last_sum_ = sum;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kFewDiffer = 8;
+
+  /// How far sums over the pairs of so many rows may be off: each addition by 2^-53 of the sum.
+  double error(std::size_t rows) const {
+    const double pairs = 0.5 * static_cast<double>(rows) * static_cast<double>(rows);
+    return 0x1p-52 * pairs * pairs * largest_;
+  }
+
+  /// Over the pairs that `rows` are in, with each other and with the others.
+  double sum_with(const Indices& rows, const Indices& others) {
+    Indices all = rows;
+    all.insert(all.end(), others.begin(), others.end());
+    return add_up(all, rows.size());
+  }
+
+  /// Over the pairs of each of the first rows and those behind it.
+  double add_up(const Indices& rows, std::size_t firsts) {
+    CorrespondenceSet table;  // of points alone
+    table.source_points = matches_.source_points(rows, Eigen::all);
+    table.target_points = matches_.target_points(rows, Eigen::all);
+    double sum = 0;
+    for (int a = 0; a < static_cast<int>(firsts); ++a) {
+      differences_.resize(rows.size());
+      for (int b = a + 1; b < table.size(); ++b) {  // apart from the sum: several at once
+        const PairDistances lengths = pair_distances(table, a, b);
+        differences_[static_cast<std::size_t>(b)] = std::abs(lengths.source - lengths.target);
+      }
+      for (std::size_t b = static_cast<std::size_t>(a) + 1; b < rows.size(); ++b) sum += differences_[b];
+    }
+    return sum;
+  }
+
+  const CorrespondenceSet& matches_;
+  const double largest_;
+  Indices last_;  ///< added up before
+  double last_sum_ = 0;
+  std::vector<double> differences_;
+};
 
 constexpr int kStepsPerComparison = 10;  // the comparison of equals may take a tenth of the steps of the search
 
@@ -90,30 +154,16 @@ class Grouping {
   /// Of all cliques as large as `first` that whose distances differ least; of equals the first in the order of lists.
   Indices tightest(const CorrespondenceSet& matches, MaxCliqueSearch& search, const Indices& first) {
     Indices best = first;
-    std::optional<double> smallest;  // of the best, once it is compared
+    Tightness tightness(matches, edge_);
     std::int64_t cliques = 0;
     const bool is_complete = search.visit_all(static_cast<int>(first.size()), options_.max_steps / kStepsPerComparison,
                                               [&](const Indices& clique) {
                                                 ++cliques;
-                                                if (clique == best) return;
-                                                if (!smallest) smallest = sum_of_differences(matches, best);
-                                                const double sum = sum_of_differences(matches, clique);
-                                                if (sum < *smallest || (sum == *smallest && clique < best))
-                                                  best = clique, smallest = sum;
+                                                if (clique != best && tightness.is_first(clique, best)) best = clique;
                                               });
     notes_.push_back({"equal_cliques", cliques});
     if (!is_complete) notes_.push_back({"comparison_left", 1});
     return best;
-  }
-
-  static double sum_of_differences(const CorrespondenceSet& matches, const Indices& clique) {
-    double sum = 0;
-    for (std::size_t a = 0; a < clique.size(); ++a)
-      for (std::size_t b = a + 1; b < clique.size(); ++b) {
-        const PairDistances lengths = pair_distances(matches, clique[a], clique[b]);
-        sum += std::abs(lengths.source - lengths.target);
-      }
-    return sum;
   }
 
   GroupingResult fit(const Indices& structure) const {

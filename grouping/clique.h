@@ -58,8 +58,8 @@ struct CliqueOptions {
 /// Reads     source_points, target_points, resolution; other columns settle ties.
 /// Returns   selected, target_from_source; notes: `steps`, `equal_cliques` (largest cliques compared), and, only where a bound
 ///           was reached, `core_instead` or `comparison_left`. Nothing if S or the selection has fewer than 3 rows.
-/// Cost      O(M^2) time and M^2 / 4 bytes; the search is exponential, bounded by max_steps, and the comparison of equals by a
-///           tenth of them.
+/// Cost      O(M^2) time and M^2 / 4 bytes; the search is exponential, bounded by max_steps and by the work of colouring
+///           (max_clique.h), the comparison of equals by a tenth of both.
 /// Throws    InvalidInput: option out of range, ragged or non-finite columns.
 /// Departs   One fit of the pose instead of rotation by differences and translation by components; ties by distances; no
 ///           clock; past the bound the core instead of a heuristic clique; no sample of large tables.

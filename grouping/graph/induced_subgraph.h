@@ -18,6 +18,8 @@ class InducedSubgraphs {
   BitGraph operator()(const Indices& nodes);
 
  private:
+  void add_row(const BitGraph::Word* neighbors, int k, BitGraph& subgraph) const;
+
   const BitGraph& graph_;
   Indices places_;                      ///< of a node in the list
   std::vector<BitGraph::Word> chosen_;  ///< the nodes of the list

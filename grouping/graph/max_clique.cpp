@@ -24,26 +24,45 @@ int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero
 
 }  // namespace
 
-MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph) : graph_(0) {
+/// The first clique is grown on the whole graph; what cannot be in a clique of its size is left out from then on.
+MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph) : whole_(graph), common_(graph), graph_(0), missing_(graph_) {
   CoreNumbers cores = core_numbers(graph);
   names_ = std::move(cores.order);
   std::reverse(names_.begin(), names_.end());
   for (const int name : names_) cores_.push_back(cores.numbers[static_cast<std::size_t>(name)]);
+  const int size = size_of_first();
+  const auto is_too_small = [&](int core) { return core + 1 < size; };
+  cores_.erase(std::find_if(cores_.begin(), cores_.end(), is_too_small), cores_.end());
+  names_.resize(cores_.size());
   graph_ = InducedSubgraphs(graph)(names_);
+  missing_ = MissingEdges(graph_);
   all_.resize(names_.size());
   std::iota(all_.begin(), all_.end(), 0);
 }
 
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
-  return 444.0 * nodes + InducedSubgraphs::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+  return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) +
+         2 * MissingEdges::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+}
+
+int MaxCliqueSearch::size_of_first() const {
+  if (names_.empty()) return 0;
+  int size = 1;
+  std::vector<Word> common(whole_.neighbors(names_[0]), whole_.neighbors(names_[0]) + whole_.words());
+  for (const int node : names_) {
+    if (!(common[static_cast<std::size_t>(node >> 6)] >> (node & 63) & 1)) continue;
+    ++size;
+    for (std::size_t word = 0; word < common.size(); ++word) common[word] &= whole_.neighbors(node)[word];
+  }
+  return size;
 }
 
 std::optional<Indices> MaxCliqueSearch::find_one(std::int64_t max_steps) {
   Indices best;
   for (int node = 0; node < graph_.size(); ++node) {
     if (cores_[static_cast<std::size_t>(node)] < static_cast<int>(best.size())) break;
-    Indices grown = grow_from(node);
+    Indices grown = grow_from(node, best.size());
     if (grown.size() > best.size()) best = std::move(grown);
   }
   best = names_of(best);
@@ -68,10 +87,22 @@ bool MaxCliqueSearch::visit_all(int size, std::int64_t max_steps, const Visit& v
   return search(max_steps);
 }
 
-/// Of the neighbours of all nodes so far the first, which has the largest core number.
-Indices MaxCliqueSearch::grow_from(int node) const {
-  Indices clique{node};
+/// Of the neighbours of all nodes so far the first, which has the largest core number. Nothing where that is no more than so many.
+Indices MaxCliqueSearch::grow_from(int node, std::size_t beaten) const {
   std::vector<Word> common(graph_.neighbors(node), graph_.neighbors(node) + graph_.words());
+  if (missing_.are_listed()) {
+    for (std::size_t word = 0; word < common.size(); ++word)
+      for (Word rest = common[word] & missing_.with_some()[word]; rest != 0; rest &= common[word] & (rest - 1)) {
+        const int next = 64 * static_cast<int>(word) + lowest(rest);
+        for (const int* other = missing_.begin(next); other != missing_.end(next); ++other)
+          common[static_cast<std::size_t>(*other >> 6)] &= ~(Word{1} << (*other & 63));
+      }
+    if (static_cast<std::size_t>(count_bits(common)) + 1 <= beaten) return {};
+    Indices clique{node};
+    BitGraph::for_bits(common.data(), graph_.words(), [&](int next) { clique.push_back(next); });
+    return clique;
+  }
+  Indices clique{node};
   for (std::size_t word = 0; word < common.size();) {
     if (common[word] == 0) {
       ++word;
@@ -85,8 +116,10 @@ Indices MaxCliqueSearch::grow_from(int node) const {
 }
 
 bool MaxCliqueSearch::search(std::int64_t max_steps) {
-  steps_ = 0, max_steps_ = max_steps;
+  steps_ = 0, max_steps_ = max_steps, work_ = 0;
+  clique_.clear();
   InducedSubgraphs induced(graph_);
+  Coloring of_graph(graph_, missing_);
   for (node_ = 0; node_ < graph_.size(); ++node_) {
     if (cores_[static_cast<std::size_t>(node_)] + 1 < needed_) break;  // so are all that follow
     candidates_ = candidates_of(node_);
@@ -96,17 +129,19 @@ bool MaxCliqueSearch::search(std::int64_t max_steps) {
       found_();
       continue;
     }
-    if (levels_.size() < candidates_.size() + 1) levels_.resize(candidates_.size() + 1);
+    if (levels_.empty()) levels_.emplace_back();
     if (2 * static_cast<int>(candidates_.size()) > graph_.size()) {  // a graph of the candidates would be no smaller
       set_candidates(graph_);
       candidates_ = all_;
-      if (!expand(graph_, 0)) return false;
+      if (!expand(graph_, of_graph)) return false;
       continue;
     }
     const BitGraph subgraph = induced(candidates_);
+    const MissingEdges missing(subgraph);
+    Coloring coloring(subgraph, missing);
     levels_[0].candidates.assign(static_cast<std::size_t>(subgraph.words()), ~Word{0});
     if (subgraph.size() % 64 != 0) levels_[0].candidates.back() = (Word{1} << subgraph.size() % 64) - 1;
-    if (!expand(subgraph, 0)) return false;
+    if (!expand(subgraph, coloring)) return false;
   }
   return true;
 }
@@ -118,28 +153,46 @@ void MaxCliqueSearch::set_candidates(const BitGraph& graph) {
 }
 
 /// The neighbours removed later that have enough neighbours in common with the node.
-Indices MaxCliqueSearch::candidates_of(int node) const {
+Indices MaxCliqueSearch::candidates_of(int node) {
+  if (node + 1 < needed_) return {};
   Indices later, kept;
   graph_.for_neighbors(node, [&](int other) {
     if (other < node) later.push_back(other);
   });
   if (static_cast<int>(later.size()) + 1 < needed_) return {};
-  Indices common(later.size());
-  graph_.count_common(node, later, common.data());
-  for (std::size_t k = 0; k < later.size(); ++k)
-    if (common[k] + 2 >= needed_) kept.push_back(later[k]);
+  const std::vector<int>& common = common_.count(names_[static_cast<std::size_t>(node)], 0, whole_.words());
+  for (const int other : later)
+    if (common[static_cast<std::size_t>(names_[static_cast<std::size_t>(other)])] + 2 >= needed_) kept.push_back(other);
   return kept;
 }
 
-bool MaxCliqueSearch::expand(const BitGraph& graph, std::size_t depth) {
-  Level& level = levels_[depth];
-  const int size = static_cast<int>(clique_.size()) + 1;  // with the node itself
-  const int colors = color(graph, level, needed_ - size), count = count_bits(level.candidates);
-  if (colors == count && size + count >= needed_) return take_all(level.candidates);
-  for (std::size_t k = level.order.size(); k-- > 0;) {
-    if (size + level.colors[k] < needed_) break;
-    if (++steps_ > max_steps_) return clique_.clear(), false;
-    const int next = level.order[k];
+/// Depth first, without recursion: a clique may have more nodes than the stack has room for.
+bool MaxCliqueSearch::expand(const BitGraph& graph, Coloring& coloring) {
+  std::size_t depth = 0;
+  bool is_new = true;
+  for (;;) {
+    if (levels_.size() == depth + 1) levels_.emplace_back();
+    Level& level = levels_[depth];
+    const int size = static_cast<int>(clique_.size()) + 1;  // with the node itself
+    if (is_new) {
+      const std::int64_t before = coloring.work();
+      const int colors = coloring(level.candidates, needed_ - size, level.order, level.colors),
+                count = count_bits(level.candidates);
+      work_ += coloring.work() - before;
+      if (colors == count && size + count >= needed_) {
+        if (!take_all(level.candidates)) return false;
+        level.order.clear();
+      }
+      is_new = false;
+    }
+    if (level.order.empty() || size + level.colors[level.order.size() - 1] < needed_) {
+      if (depth-- == 0) return true;
+      clique_.pop_back();
+      levels_[depth].remove_last();
+      continue;
+    }
+    if (++steps_ > max_steps_ || work_ / kWorkPerStep > max_steps_) return false;
+    const int next = level.order.back();
     std::vector<Word>& common = levels_[depth + 1].candidates;
     common.resize(level.candidates.size());
     Word any = 0;
@@ -147,14 +200,19 @@ bool MaxCliqueSearch::expand(const BitGraph& graph, std::size_t depth) {
       any |= common[word] = level.candidates[word] & graph.neighbors(next)[word];
     clique_.push_back(next);
     if (any != 0) {
-      if (!expand(graph, depth + 1)) return false;
-    } else if (size + 1 >= needed_) {
-      found_();
+      ++depth;
+      is_new = true;
+      continue;
     }
+    if (size + 1 >= needed_) found_();
     clique_.pop_back();
-    level.candidates[static_cast<std::size_t>(next >> 6)] &= ~(Word{1} << (next & 63));
+    level.remove_last();
   }
-  return true;
+}
+
+void MaxCliqueSearch::Level::remove_last() {
+  candidates[static_cast<std::size_t>(order.back() >> 6)] &= ~(Word{1} << (order.back() & 63));
+  order.pop_back();
 }
 
 /// Every candidate has a colour of its own: it is a neighbour of all before it. The steps are those of one after the other.
@@ -163,34 +221,10 @@ bool MaxCliqueSearch::take_all(const std::vector<Word>& candidates) {
   BitGraph::for_bits(candidates.data(), static_cast<int>(candidates.size()),
                      [&](int node) { clique_.push_back(node); });
   steps_ += static_cast<std::int64_t>(clique_.size() - before);
-  if (steps_ > max_steps_) return clique_.clear(), false;
+  if (steps_ > max_steps_) return false;
   found_();
   clique_.resize(before);
   return true;
-}
-
-/// Gives each candidate the first colour that none of its neighbours has; keeps those of colour `least` or above, ascending. Returns the
-/// number of colours.
-int MaxCliqueSearch::color(const BitGraph& graph, Level& level, int least) const {
-  level.order.clear(), level.colors.clear();
-  level.uncolored = level.candidates;
-  const std::size_t words = level.uncolored.size();
-  std::size_t first = 0;
-  for (int color = 1;; ++color) {
-    while (first < words && level.uncolored[first] == 0) ++first;
-    if (first == words) return color - 1;
-    level.one_color = level.uncolored;
-    for (std::size_t word = first; word < words; ++word) {
-      while (level.one_color[word] != 0) {
-        const int bit = lowest(level.one_color[word]), node = 64 * static_cast<int>(word) + bit;
-        level.uncolored[word] &= ~(Word{1} << bit);
-        level.one_color[word] &= ~(Word{1} << bit);
-        const Word* neighbors = graph.neighbors(node);
-        for (std::size_t k = word; k < words; ++k) level.one_color[k] &= ~neighbors[k];
-        if (color >= least) level.order.push_back(node), level.colors.push_back(color);
-      }
-    }
-  }
 }
 
 Indices MaxCliqueSearch::names_of(const Indices& nodes) const {

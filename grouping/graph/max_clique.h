@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <optional>
 
-#include "grouping/graph/bit_graph.h"
+#include "grouping/graph/coloring.h"
+#include "grouping/graph/common_neighbors.h"
 
 namespace corral {
 
@@ -15,9 +17,11 @@ namespace corral {
 /// colours together do not reach the size that is needed. A first clique is grown greedily from each node, neighbours of the
 /// largest core number first. Nodes whose core number is too small for that size never take part.
 /// Source    [tomita2003efficient] (colouring), [eppstein2010listing] (order).
-/// Cost      Exponential in the worst case. A step is one node put into a clique, and steps are bounded.
+/// Cost      Exponential in the worst case. A step is one node put into a clique. Steps are bounded, and so is the work of
+///           colouring (coloring.h), to 2^15 for each step allowed: the first bound reached ends a search.
 class MaxCliqueSearch {
  public:
+  /// `graph` must outlive it.
   explicit MaxCliqueSearch(const BitGraph& graph);
 
   /// Bytes for so many nodes, beside the graph.
@@ -35,26 +39,31 @@ class MaxCliqueSearch {
 
  private:
   struct Level {
-    std::vector<BitGraph::Word> candidates, uncolored, one_color;
-    Indices order, colors;  ///< candidates that may lead to the size needed
+    std::vector<BitGraph::Word> candidates;
+    Indices order, colors;  ///< candidates that may lead to the size needed; those done are gone from `order`
+    void remove_last();
   };
+  static constexpr std::int64_t kWorkPerStep = 1 << 15;
 
-  Indices grow_from(int node) const;
+  int size_of_first() const;
+  Indices grow_from(int node, std::size_t beaten) const;
   bool search(std::int64_t max_steps);
-  Indices candidates_of(int node) const;
+  Indices candidates_of(int node);
   void set_candidates(const BitGraph& graph);
   bool take_all(const std::vector<BitGraph::Word>& candidates);
-  bool expand(const BitGraph& graph, std::size_t depth);
-  int color(const BitGraph& graph, Level& level, int least) const;
+  bool expand(const BitGraph& graph, Coloring& coloring);
   Indices names_of(const Indices& nodes) const;
 
-  Indices names_;        ///< nodes of the caller, the last removed first; here they are 0, 1, ...
-  Indices cores_, all_;  ///< all nodes
-  BitGraph graph_;
-  std::vector<Level> levels_;
+  const BitGraph& whole_;
+  CommonNeighbors common_;  ///< of it
+  Indices names_;  ///< the nodes of the caller that may take part, the last removed first; here they are 0, 1, ...
+  Indices cores_, all_;  ///< of them
+  BitGraph graph_;       ///< between them
+  MissingEdges missing_;
+  std::deque<Level> levels_;
   Indices clique_, candidates_;  ///< those of the present node; the clique holds places among them
   int node_ = 0, needed_ = 0;
-  std::int64_t steps_ = 0, max_steps_ = 0;
+  std::int64_t steps_ = 0, max_steps_ = 0, work_ = 0;
   std::function<void()> found_;
 };
 

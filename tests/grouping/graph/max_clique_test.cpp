@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "grouping/graph/core_numbers.h"
+#include "grouping/graph/maximal_cliques.h"
 #include "tests/support/random_graphs.h"
 
 namespace corral {
@@ -66,6 +67,31 @@ TEST(MaxClique, OfMoreNodesThanAWordHolds) {
       for (const int b : planted)
         if (a < b) graph.connect(a, b);
     ASSERT_EQ(all_largest(graph), std::vector<Indices>{planted});
+  }
+}
+
+/// Where the edges that are missing are listed.
+TEST(MaxClique, OfGraphsThatLackFewEdgesAreTheLargestMaximalOnes) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    RandomStream random(seed);
+    BitGraph graph(700 + static_cast<int>(seed));
+    for (int a = 0; a < 600; ++a)
+      for (int b = 0; b < a; ++b) graph.connect(a, b);
+    for (int edge = 0; edge < 400; ++edge)
+      graph.disconnect(static_cast<int>(random.below(12)), static_cast<int>(random.below(12)));
+    for (int edge = 0; edge < 5; ++edge)
+      graph.disconnect(static_cast<int>(random.below(600)), static_cast<int>(random.below(600)));
+    for (int a = 600; a < graph.size(); ++a)
+      for (int edge = 0; edge < 50; ++edge) graph.connect(a, static_cast<int>(random.below(600)));
+    std::vector<Indices> expected;
+    visit_maximal_cliques(graph, 3, kEnough, [&](const Indices& clique) {
+      if (!expected.empty() && clique.size() < expected[0].size()) return;
+      if (!expected.empty() && clique.size() > expected[0].size()) expected.clear();
+      expected.push_back(clique);
+      std::sort(expected.back().begin(), expected.back().end());
+    });
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(all_largest(graph), expected) << "seed " << seed;
   }
 }
 
