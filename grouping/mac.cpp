@@ -48,6 +48,14 @@ class HeaviestCliques {
   HeaviestCliques(int nodes, int per_node)
       : per_node_(static_cast<std::size_t>(per_node)), named_(static_cast<std::size_t>(nodes)) {}
 
+  /// Whether a clique of this weight may be among them.
+  bool are_reached(double weight, const Indices& nodes) const {
+    return std::any_of(nodes.begin(), nodes.end(), [&](int node) {
+      const Indices& named = named_[static_cast<std::size_t>(node)];
+      return named.size() < per_node_ || weight >= at(named.back()).weight;
+    });
+  }
+
   void offer(const WeighedClique& clique) {
     int place = -1;
     for (const int node : clique.nodes) {
@@ -128,8 +136,7 @@ class Grouping {
         weights_(graph_) {}
 
   GroupingResult run() {
-    weigh();
-    measure_connectedness();
+    measure();
     const std::vector<WeighedClique> cliques = find_cliques(well_connected_nodes());
     PoseChoice choice(matches_, rule_of(options_));
     for (const WeighedClique& clique : cliques)
@@ -142,30 +149,38 @@ class Grouping {
   }
 
  private:
-  /// W on the edges of G; those of weight 0 leave the graph.
-  void weigh() {
+  /// W and c.
+  void measure() {
     const double alpha = kAlphaPr * matches_.resolution;
     weights_.replace_each([&](int i, int j, double) {
       const PairDistances lengths = pair_distances(matches_, i, j);
       const double d = (lengths.source - lengths.target) / alpha;
       return exponential(-d * d / 2);
     });
-    weights_.set(weights_.path_sums());
-    for (int i = 0; i < graph_.size(); ++i)
-      weights_.for_edges(i, [&](int j, double weight) {
-        if (!(weight > 0)) graph_.disconnect(i, j);
-      });
+    PathSums paths(weights_);
+    weigh(paths);
+    measure_connectedness(paths);
+  }
+
+  /// W on the edges of G; those of weight 0 leave the graph.
+  void weigh(PathSums& paths) {
+    paths.visit([](double weight) { return weight; },
+                [&](const PathSums::PathSum& path) {
+                  weights_.set(path.there, path.sum), weights_.set(path.back, path.sum);
+                  if (!(path.sum > 0)) graph_.disconnect(path.node, path.other);
+                });
   }
 
   /// c: the sum over the pairs of neighbours, which the sum of paths counts twice, by their number.
-  void measure_connectedness() {
-    EdgeWeights roots = weights_;
-    roots.replace_each([](int, int, double weight) { return cube_root(weight); });
-    roots.set(roots.path_sums());
+  void measure_connectedness(PathSums& paths) {
+    std::vector<double> sums(static_cast<std::size_t>(graph_.size()));
+    paths.visit(cube_root, [&](const PathSums::PathSum& path) {  // to each node in the order of its neighbours
+      sums[static_cast<std::size_t>(path.node)] += path.sum / 2;
+      sums[static_cast<std::size_t>(path.other)] += path.sum / 2;
+    });
     double all_sums = 0, all_pairs = 0;
     for (int i = 0; i < graph_.size(); ++i) {
-      double sum = 0;
-      roots.for_edges(i, [&](int, double paths) { sum += paths / 2; });
+      const double sum = sums[static_cast<std::size_t>(i)];
       const double degree = graph_.degree(i), pairs = degree * (degree - 1) / 2;
       connectedness_.push_back(degree < 2 ? 0 : sum / pairs);
       all_sums += sum, all_pairs += pairs;
@@ -206,6 +221,7 @@ class Grouping {
             WeighedClique weighed{0, clique};
             for (int& node : weighed.nodes) node = nodes[static_cast<std::size_t>(node)];
             weighed.weight = weigh(weighed.nodes);
+            if (!heaviest.are_reached(weighed.weight, weighed.nodes)) return;
             std::sort(weighed.nodes.begin(), weighed.nodes.end());
             heaviest.offer(weighed);
           });
@@ -247,8 +263,7 @@ double working_memory(int matches, const MacOptions& options) {
   const double pairs = 1.0 * matches * matches, hypotheses = 1.0 * options.cliques_per_node * matches;
   // The weights of edges; then those behind c, or the cliques that matches name.
   const double later =
-      std::max(EdgeWeights::memory(matches, pairs) + 8 * pairs + 8 * EdgeWeights::matrix_entries(matches),
-               4 * options.cliques_per_node * pairs);
+      std::max(PathSums::memory(matches, pairs) + 16.0 * matches, 4 * options.cliques_per_node * pairs);
   return canonical_order_memory(matches) + BitGraph::memory(matches) + EdgeWeights::memory(matches, pairs) + later +
          maximal_cliques_memory(matches) + 100 * hypotheses + PoseChoice::memory(matches, hypotheses, rule_of(options));
 }

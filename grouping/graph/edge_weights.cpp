@@ -64,46 +64,6 @@ EdgeWeights::EdgeWeights(const BitGraph& graph) : starts_(static_cast<std::size_
   weights_.resize(neighbors_.size());
 }
 
-std::vector<double> EdgeWeights::path_sums() const {
-  std::vector<double> sums(weights_.size());
-  if (size() <= kMostInMatrix && 8.0 * static_cast<double>(weights_.size()) >= 1.0 * size() * size()) {
-    multiply_matrix(sums);
-    return sums;
-  }
-  std::vector<double> row(static_cast<std::size_t>(size()));
-  std::vector<std::size_t> back(starts_.begin(), starts_.end() - 1);
-  for (int node = 0; node < size(); ++node) {
-    for (std::size_t edge = begin(node); edge < end(node); ++edge)
-      row[static_cast<std::size_t>(neighbors_[edge])] = weights_[edge];
-    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < end(node); ++edge) {
-      const int other = neighbors_[edge];
-      sums[edge] = sums[back[static_cast<std::size_t>(other)]++] = weights_[edge] * sum_of_products(other, row);
-    }
-    for (std::size_t edge = begin(node); edge < end(node); ++edge) row[static_cast<std::size_t>(neighbors_[edge])] = 0;
-  }
-  return sums;
-}
-
-void EdgeWeights::multiply_matrix(std::vector<double>& sums) const {
-  constexpr std::size_t kStrip = 4;
-  const auto rows = static_cast<std::size_t>(padded(size()));
-  AlignedColumn matrix(rows * rows, 0.0), strip(kStrip * rows);
-  for (int node = 0; node < size(); ++node)
-    for_edges(node, [&](int other, double weight) {
-      matrix[static_cast<std::size_t>(node) * rows + static_cast<std::size_t>(other)] = weight;
-    });
-  std::vector<std::size_t> back(starts_.begin(), starts_.end() - 1);
-  for (std::size_t node = 0; node < static_cast<std::size_t>(size()); ++node) {
-    const double* const products = &strip[node % kStrip * rows];
-    if (node % kStrip == 0)
-      HWY_DYNAMIC_DISPATCH(multiply_strip)(matrix.data(), static_cast<int>(rows), static_cast<int>(node), strip.data());
-    for (std::size_t edge = back[node]; edge < starts_[node + 1]; ++edge) {
-      const auto other = static_cast<std::size_t>(neighbors_[edge]);
-      sums[edge] = sums[back[other]++] = weights_[edge] * products[other];
-    }
-  }
-}
-
 /// In the order of lanes.
 double EdgeWeights::sum_of_products(int node, const std::vector<double>& factors) const {
   double s[kLanes] = {};
@@ -112,6 +72,53 @@ double EdgeWeights::sum_of_products(int node, const std::vector<double>& factors
     s[other % kLanes] += factors[other] * weights_[edge];
   }
   return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
+
+PathSums::PathSums(const EdgeWeights& weights) : weights_(weights) {
+  const auto rows = static_cast<std::size_t>(padded(weights.size()));
+  const double edges = static_cast<double>(weights.neighbors_.size());
+  if (weights.size() <= kMostInMatrix && 8 * edges >= 1.0 * weights.size() * weights.size())
+    matrix_.assign(rows * rows, 0.0);
+}
+
+void PathSums::visit(double (*value)(double), const std::function<void(const PathSum&)>& visit) {
+  if (!matrix_.empty()) return multiply_matrix(value, visit);
+  EdgeWeights values = weights_;
+  values.replace_each([&](int, int, double weight) { return value(weight); });
+  std::vector<double> row(static_cast<std::size_t>(values.size()));
+  std::vector<std::size_t> back(values.starts_.begin(), values.starts_.end() - 1);
+  for (int node = 0; node < values.size(); ++node) {
+    values.for_edges(node, [&](int other, double each) { row[static_cast<std::size_t>(other)] = each; });
+    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < values.end(node); ++edge) {
+      const int other = values.neighbors_[edge];
+      visit({node, other, edge, back[static_cast<std::size_t>(other)]++,
+             values.weights_[edge] * values.sum_of_products(other, row)});
+    }
+    values.for_edges(node, [&](int other, double) { row[static_cast<std::size_t>(other)] = 0; });
+  }
+}
+
+void PathSums::multiply_matrix(double (*value)(double), const std::function<void(const PathSum&)>& visit) {
+  const auto rows = static_cast<std::size_t>(padded(weights_.size()));
+  const auto at = [&](int row, int column) -> double& {
+    return matrix_[static_cast<std::size_t>(row) * rows + static_cast<std::size_t>(column)];
+  };
+  AlignedColumn strip(kStrip * rows);
+  for (int node = 0; node < weights_.size(); ++node)
+    weights_.for_edges(node, [&](int other, double weight) {
+      if (other > node) at(node, other) = at(other, node) = value(weight);
+    });
+  std::vector<std::size_t> back(weights_.starts_.begin(), weights_.starts_.end() - 1);
+  for (int node = 0; node < weights_.size(); ++node) {
+    const double* const products = &strip[static_cast<std::size_t>(node) % kStrip * rows];
+    if (static_cast<std::size_t>(node) % kStrip == 0)
+      HWY_DYNAMIC_DISPATCH(multiply_strip)(matrix_.data(), static_cast<int>(rows), node, strip.data());
+    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < weights_.end(node); ++edge) {
+      const int other = weights_.neighbors_[edge];
+      visit({node, other, edge, back[static_cast<std::size_t>(other)]++,
+             at(node, other) * products[static_cast<std::size_t>(other)]});
+    }
+  }
 }
 
 }  // namespace corral

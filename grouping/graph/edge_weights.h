@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -16,10 +17,8 @@ class EdgeWeights {
   /// All weights are 0.
   explicit EdgeWeights(const BitGraph& graph);
 
-  /// Bytes for so many nodes and ordered pairs of them that are connected; path_sums() takes 8 for each pair more, and
-  /// 8 `matrix_entries`.
+  /// Bytes for so many nodes and ordered pairs of them that are connected.
   static double memory(int nodes, double pairs) { return 12.0 * pairs + 24.0 * nodes; }
-  static double matrix_entries(int nodes) { return nodes <= kMostInMatrix ? (nodes + 4.0) * padded(nodes) : 0; }
 
   int size() const { return static_cast<int>(starts_.size()) - 1; }
 
@@ -42,22 +41,49 @@ class EdgeWeights {
             value(node, neighbors_[edge], weights_[edge]);
   }
 
-  /// W_ij sum_k W_ik W_jk over the common neighbours, in the order of the edges; for set(). Sums of eight: those of k = 0, 8,
-  /// 16, ..., of k = 1, 9, 17, ... and so on, then of these. Graphs with an edge for one pair in eight or more are
-  /// multiplied as whole matrices, with the same sums.
-  std::vector<double> path_sums() const;
-  void set(std::vector<double> weights) { weights_ = std::move(weights); }
+  /// Changes the weight at a place that PathSum names.
+  void set(std::size_t place, double weight) { weights_[place] = weight; }
 
  private:
-  static constexpr int kMostInMatrix = 2048;  ///< nodes of graphs that are multiplied as matrices
-
-  void multiply_matrix(std::vector<double>& sums) const;
+  friend class PathSums;
   std::size_t begin(int node) const { return starts_[static_cast<std::size_t>(node)]; }
   std::size_t end(int node) const { return starts_[static_cast<std::size_t>(node) + 1]; }
 
   std::vector<std::size_t> starts_;
   Indices neighbors_;
   std::vector<double> weights_;
+};
+
+/// V_ij sum_k V_ik V_jk over the common neighbours of the nodes of each edge, V a function of the weights, in the order of the edges.
+/// Sums of eight: those of k = 0, 8, 16, ..., of k = 1, 9, 17, ... and so on, then of these. Graphs with an edge for one pair
+/// in eight or more are multiplied as whole matrices, with the same sums.
+class PathSums {
+ public:
+  /// `weights` must outlive it; they may change, their graph may not.
+  explicit PathSums(const EdgeWeights& weights);
+
+  /// Bytes for so many nodes and ordered pairs of them that are connected.
+  static double memory(int nodes, double pairs) {
+    return nodes <= kMostInMatrix ? 8.0 * (nodes + kStrip) * padded(nodes) : 8 * pairs + 24.0 * nodes;
+  }
+
+  /// An edge, the smaller node first, and its two places among the weights.
+  struct PathSum {
+    int node, other;
+    std::size_t there, back;
+    double sum;
+  };
+  /// V = value(W). By the smaller node, then by the other. The weights may be set meanwhile.
+  void visit(double (*value)(double), const std::function<void(const PathSum&)>& visit);
+
+ private:
+  static constexpr int kMostInMatrix = 2048;  ///< nodes of graphs that are multiplied as matrices
+  static constexpr std::size_t kStrip = 4;    ///< rows that are multiplied together
+
+  void multiply_matrix(double (*value)(double), const std::function<void(const PathSum&)>& visit);
+
+  const EdgeWeights& weights_;
+  AlignedColumn matrix_;  ///< V, kept from sum to sum: memory that is new takes longer than the product
 };
 
 }  // namespace corral
