@@ -88,22 +88,35 @@ class Triangles {
     const std::size_t held = pivots_held(matches_.size(), static_cast<int>(count));
     pivots_.reserve(held);
     std::vector<BitGraph::Word> found;
+    Indices others, counts_of_others;
     int fewest = 1, end = graph_.size();  // with less an edge is not among the first; no node from `end` on has more
+    const auto offer = [&](int i, int j, int shared) {
+      if (shared < fewest) return;
+      const bool in_order = name(i) < name(j);
+      pivots_.push_back({shared, in_order ? i : j, in_order ? j : i, difference_of_lengths(matches_, i, j)});
+      if (pivots_.size() == held && held > count) fewest = keep_first(count);
+    };
     for (int i = 0; i < end; ++i) {
       while (end > i && common_.degree(end - 1) <= fewest) --end;
       if (common_.degree(i) <= fewest) continue;
       const int first = i / 64, last = (end + 63) / 64;
+      if (!common_.is_faster(i, first, last, graph_.degree(i, first, last))) {
+        others.clear();
+        graph_.for_neighbors(i, [&](int j) {
+          if (j > i && common_.degree(j) > fewest) others.push_back(j);
+        });
+        counts_of_others.resize(others.size());
+        graph_.count_common(i, others, counts_of_others.data());
+        for (std::size_t k = 0; k < others.size(); ++k) offer(i, others[k], counts_of_others[k]);
+        continue;
+      }
       const std::vector<int>& counts = common_.count(i, first, last);
       common_.find(fewest, found);
       found[0] &= ~((BitGraph::Word{2} << (i & 63)) - 1);
       for (int word = first; word < last; ++word) {
         const BitGraph::Word edges = found[static_cast<std::size_t>(word - first)] & graph_.neighbors(i)[word];
         BitGraph::for_bits(&edges, 1, [&](int bit) {
-          const int j = 64 * word + bit, shared = counts[static_cast<std::size_t>(j - 64 * first)];
-          if (shared < fewest) return;
-          const bool in_order = name(i) < name(j);
-          pivots_.push_back({shared, in_order ? i : j, in_order ? j : i, difference_of_lengths(matches_, i, j)});
-          if (pivots_.size() == held && held > count) fewest = keep_first(count);
+          offer(i, 64 * word + bit, counts[static_cast<std::size_t>(64 * (word - first) + bit)]);
         });
       }
     }

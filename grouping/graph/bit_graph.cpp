@@ -97,9 +97,9 @@ namespace corral {
 HWY_EXPORT(count_common);
 HWY_EXPORT(compare_from);
 
-int BitGraph::degree(int node) const {
+int BitGraph::degree(int node, int first, int last) const {
   int count = 0;
-  for (int word = 0; word < words_; ++word) count += static_cast<int>(hwy::PopCount(neighbors(node)[word]));
+  for (int word = first; word < last; ++word) count += static_cast<int>(hwy::PopCount(neighbors(node)[word]));
   return count;
 }
 

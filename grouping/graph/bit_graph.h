@@ -28,7 +28,8 @@ class BitGraph {
   bool is_edge(int a, int b) const { return neighbors(a)[b >> 6] >> (b & 63) & 1; }
   void connect(int a, int b) { set(a, b), set(b, a); }
   void disconnect(int a, int b) { clear(a, b), clear(b, a); }
-  int degree(int node) const;
+  int degree(int node) const { return degree(node, 0, words_); }
+  int degree(int node, int first, int last) const;  ///< in the words from `first` to before `last`
 
   /// counts[k] = the number of common neighbours of `node` and others[k].
   void count_common(int node, const Indices& others, int* counts) const;

@@ -142,6 +142,15 @@ CommonNeighbors::CommonNeighbors(const BitGraph& graph)
   counts_.reserve(in_dense_.size());
 }
 
+/// A word that is added takes nearly twice the time of one that is compared.
+bool CommonNeighbors::is_faster(int node, int first, int last, int others) const {
+  std::size_t different = 0;
+  for (std::size_t word = 0; word < dense_.size(); ++word)
+    different += hwy::PopCount(graph_.neighbors(node)[word] ^ dense_[word]);
+  const std::size_t added = std::min(different, static_cast<std::size_t>(degree(node)));
+  return 7 * added * static_cast<std::size_t>(last - first) < 4 * static_cast<std::size_t>(others) * dense_.size();
+}
+
 const std::vector<int>& CommonNeighbors::count(int node, int first, int last) {
   const Word* const neighbors = graph_.neighbors(node);
   added_.clear(), removed_.clear();

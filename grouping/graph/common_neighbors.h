@@ -14,7 +14,7 @@ namespace corral {
 ///   | N(i) & N(j) | = | H & N(j) | + | { k in N(i), not in H : j in N(k) } | - | { k in H, not in N(i) : j in N(k) } |
 ///
 /// so that the rows of bits of those k alone are added up, which are few where the graph is a dense part and little else. Where
-/// they are more than N(i), the rows of N(i) are added up.
+/// they are more than N(i), the rows of N(i) are added up; of a sparse graph BitGraph::count_common() is faster then.
 class CommonNeighbors {
  public:
   /// `graph` must outlive it.
@@ -24,6 +24,9 @@ class CommonNeighbors {
   static double memory(int nodes) { return 20.125 * nodes + 2048 + kSlices * kChunk * sizeof(BitGraph::Word); }
 
   int degree(int node) const { return degrees_[static_cast<std::size_t>(node)]; }
+
+  /// Whether count() takes less time than BitGraph::count_common() with so many others.
+  bool is_faster(int node, int first, int last, int others) const;
 
   /// counts[j - 64 first] for the nodes j whose bits are in the words from `first` to before `last`, up to the next call.
   /// Plain form  BitGraph::count_common

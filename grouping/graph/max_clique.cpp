@@ -25,7 +25,8 @@ int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero
 }  // namespace
 
 /// The first clique is grown on the whole graph; what cannot be in a clique of its size is left out from then on.
-MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph) : whole_(graph), common_(graph), graph_(0), missing_(graph_) {
+MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_step)
+    : whole_(graph), work_per_step_(work_per_step), common_(graph), graph_(0), missing_(graph_) {
   CoreNumbers cores = core_numbers(graph);
   names_ = std::move(cores.order);
   std::reverse(names_.begin(), names_.end());
@@ -160,9 +161,20 @@ Indices MaxCliqueSearch::candidates_of(int node) {
     if (other < node) later.push_back(other);
   });
   if (static_cast<int>(later.size()) + 1 < needed_) return {};
-  const std::vector<int>& common = common_.count(names_[static_cast<std::size_t>(node)], 0, whole_.words());
-  for (const int other : later)
-    if (common[static_cast<std::size_t>(names_[static_cast<std::size_t>(other)])] + 2 >= needed_) kept.push_back(other);
+  const int name = names_[static_cast<std::size_t>(node)];
+  const auto keep = [&](int other, int common) {
+    if (common + 2 >= needed_) kept.push_back(other);
+  };
+  if (common_.is_faster(name, 0, whole_.words(), static_cast<int>(later.size()))) {
+    const std::vector<int>& common = common_.count(name, 0, whole_.words());
+    for (const int other : later)
+      keep(other, common[static_cast<std::size_t>(names_[static_cast<std::size_t>(other)])]);
+    return kept;
+  }
+  Indices common(later.size()), named;
+  for (const int other : later) named.push_back(names_[static_cast<std::size_t>(other)]);
+  whole_.count_common(name, named, common.data());
+  for (std::size_t k = 0; k < later.size(); ++k) keep(later[k], common[k]);
   return kept;
 }
 
@@ -191,7 +203,7 @@ bool MaxCliqueSearch::expand(const BitGraph& graph, Coloring& coloring) {
       levels_[depth].remove_last();
       continue;
     }
-    if (++steps_ > max_steps_ || work_ / kWorkPerStep > max_steps_) return false;
+    if (++steps_ > max_steps_ || work_ / work_per_step_ > max_steps_) return false;
     const int next = level.order.back();
     std::vector<Word>& common = levels_[depth + 1].candidates;
     common.resize(level.candidates.size());

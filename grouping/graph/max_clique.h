@@ -18,11 +18,11 @@ namespace corral {
 /// largest core number first. Nodes whose core number is too small for that size never take part.
 /// Source    [tomita2003efficient] (colouring), [eppstein2010listing] (order).
 /// Cost      Exponential in the worst case. A step is one node put into a clique. Steps are bounded, and so is the work of
-///           colouring (coloring.h), to 2^15 for each step allowed: the first bound reached ends a search.
+///           colouring (coloring.h), to `work_per_step` for each step allowed: the first bound reached ends a search.
 class MaxCliqueSearch {
  public:
   /// `graph` must outlive it.
-  explicit MaxCliqueSearch(const BitGraph& graph);
+  explicit MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_step = 1 << 14);
 
   /// Bytes for so many nodes, beside the graph.
   static double memory(int nodes);
@@ -43,7 +43,6 @@ class MaxCliqueSearch {
     Indices order, colors;  ///< candidates that may lead to the size needed; those done are gone from `order`
     void remove_last();
   };
-  static constexpr std::int64_t kWorkPerStep = 1 << 15;
 
   int size_of_first() const;
   Indices grow_from(int node, std::size_t beaten) const;
@@ -55,6 +54,7 @@ class MaxCliqueSearch {
   Indices names_of(const Indices& nodes) const;
 
   const BitGraph& whole_;
+  const std::int64_t work_per_step_;
   CommonNeighbors common_;  ///< of it
   Indices names_;  ///< the nodes of the caller that may take part, the last removed first; here they are 0, 1, ...
   Indices cores_, all_;  ///< of them

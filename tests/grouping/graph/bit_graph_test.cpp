@@ -21,6 +21,7 @@ TEST(BitGraph, NeighborsComeInOrder) {
   graph.for_neighbors(100, [&](int node) { seen.push_back(node); });
   EXPECT_THAT(seen, ElementsAre(3, 63, 64, 150, 199));
   EXPECT_EQ(graph.degree(100), 5);
+  EXPECT_EQ(graph.degree(100, 1, 3), 2);
   EXPECT_TRUE(graph.is_edge(199, 100));
   graph.disconnect(199, 100);
   EXPECT_FALSE(graph.is_edge(100, 199) || graph.is_edge(199, 100));

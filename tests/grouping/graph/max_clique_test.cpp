@@ -118,6 +118,17 @@ TEST(MaxClique, OfGraphsWithoutEdges) {
   EXPECT_THAT(all_largest(BitGraph(5)), SizeIs(5));
 }
 
+TEST(MaxClique, WorkOfColoringIsBounded) {
+  RandomStream random(1);
+  const BitGraph hard = testing::random_graph(random, 120, 0.7);
+  MaxCliqueSearch search(hard), frugal(hard, 1);
+  const Indices clique = search.find_one(kEnough).value();
+  const std::int64_t steps = search.steps();
+  EXPECT_FALSE(frugal.find_one(steps));
+  EXPECT_LT(frugal.steps(), steps);
+  EXPECT_EQ(frugal.find_one(1000 * steps), clique);
+}
+
 TEST(MaxClique, StepsAreBounded) {
   const BitGraph graph = testing::moon_moser_graph(6);
   MaxCliqueSearch search(graph);
