@@ -34,7 +34,7 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
 constexpr char kWatch[] =
     "shard=$!\n"
     "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
-    "trap 'kill -TERM \"$shard\"' TERM\n"
+    "trap 'kill -TERM \"$shard\" 2> /dev/null' TERM\n"
     "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
     "most=5\n"
     "if [ \"$status\" = 143 ]; then most=100; fi\n"
