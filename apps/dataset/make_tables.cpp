@@ -18,8 +18,8 @@ std::string recipe(const MakeTablesOptions& options, const Dataset& set) {
   for (const DatasetPair& given : set.pairs) {
     const DatasetPair pair = set.with_paths(given);
     text += "pair " + pair.name;
-    for (const std::string& file : {pair.source, pair.target, pair.matches})
-      if (!file.empty()) text += " " + checksum(file);
+    for (const std::string& file : pair.files())
+      if (!file.empty()) text += " " + checksum(split_transform_name(file).file);
     text += "\n";
   }
   return text;

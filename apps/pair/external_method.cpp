@@ -11,6 +11,7 @@
 #include "apps/pair/methods.h"
 #include "apps/runtime/child_program.h"
 #include "apps/runtime/temporary_folder.h"
+#include "io/array/npy_file.h"
 #include "io/disk/file.h"
 #include "io/matches/matches_file.h"
 #include "io/text/line_reader.h"
@@ -87,7 +88,7 @@ std::string group_file(const std::string& named) {
 /// Whether a program that ended well wrote nothing into its answer, or an array of nothing: it selects nothing.
 bool is_empty(const std::string& file) {
   const std::string content = read_file(file);
-  return content.empty() || (content.rfind("\x93NUMPY", 0) == 0 && content.substr(0, 256).find("'shape': (0,)") != std::string::npos);
+  return content.empty() || (file.size() > 4 && file.substr(file.size() - 4) == ".npy" && parse_npy(file, content).rows.size() == 0);
 }
 
 }  // namespace

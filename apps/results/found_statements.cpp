@@ -52,7 +52,7 @@ class SetStatements {
     }
     if (method.empty()) return std::nullopt;
     return compared(column(method), table_.column(method, "initial_success_5pr"),
-                    "The refinement raises the share of pairs that " + method + " registers");
+                    "Refinement raises the share of pairs that " + method + " registers");
   }
 
   std::optional<FoundStatement> perfect() const {
@@ -73,13 +73,10 @@ class SetStatements {
   }
 
   std::optional<FoundStatement> hardest() const {
-    double from = 0;
-    for (std::size_t bin = 0; bin < kCorrectShares.size(); from = kCorrectShares[bin++]) {
+    for (std::size_t bin = 0; bin < kCorrectShares.size(); ++bin) {
       std::vector<std::size_t> rows;
-      for (const std::size_t row : all_) {
-        const double share = 100 * table_.correct_share[row];
-        if (share >= from && (share < kCorrectShares[bin] || bin + 1 == kCorrectShares.size())) rows.push_back(row);
-      }
+      for (const std::size_t row : all_)
+        if (!std::isnan(table_.correct_share[row]) && correct_share_bin(table_.correct_share[row]) == bin) rows.push_back(row);
       if (rows.size() < kFewestPairs) continue;
       std::vector<std::pair<double, std::string>> shares;  // of groupers with any pose there
       for (const MethodShare& each : choice_.methods) {

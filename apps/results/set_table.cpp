@@ -5,21 +5,19 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <tuple>
 
 #include "apps/results/statistics.h"
 #include "kernel/number_text.h"
 
 namespace corral {
 
-const std::vector<double> kCorrectShares = {1, 2, 5, 10, 20, 50, 100};
 const std::vector<double> kMatchCounts = {300, 1000, 3000, std::numeric_limits<double>::infinity()};
 
 namespace {
 
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 const char* const kOracle = "oracle";
-const std::vector<std::string> kNumbers = {"success_5pr", "initial_success_5pr", "precision", "recall", "f1"};
+const std::vector<std::string> kNumbers = {"success_5pr", "initial_success_5pr", "precision", "recall"};
 
 double at(const RowNumbers* column, std::size_t row) { return column ? (*column)[row] : kAbsent; }
 
@@ -69,20 +67,15 @@ class SetTableBuilder {
   std::map<std::string, std::vector<double>> times_;
 };
 
-std::size_t bin_of(const std::vector<double>& ends, double value) {
-  const auto place = std::upper_bound(ends.begin(), ends.end() - 1, value);
-  return static_cast<std::size_t>(place - ends.begin());
+std::size_t match_count_bin(double matches) {
+  const auto place = std::upper_bound(kMatchCounts.begin(), kMatchCounts.end() - 1, matches);
+  return static_cast<std::size_t>(place - kMatchCounts.begin());
 }
 
 MethodShare share_of(const SetTable& table, const std::string& method, const std::vector<std::size_t>& rows) {
-  MethodShare share;
-  share.method = method;
-  double sum = 0;
-  const RowNumbers& success = table.column(method, "success_5pr");
-  for (const std::size_t row : rows)
-    if (!std::isnan(success[row])) sum += success[row], ++share.pairs;
-  if (share.pairs > 0) share.success = sum / share.pairs;
-  std::tie(share.low, share.high) = wilson_interval(sum, share.pairs);
+  RowNumbers within;
+  for (const std::size_t row : rows) within.push_back(table.column(method, "success_5pr")[row]);
+  MethodShare share{success_share(within), method, {}};
   const auto time = table.median_ms.find(method);
   if (time != table.median_ms.end()) share.median_ms = time->second;
   return share;
@@ -101,11 +94,6 @@ std::vector<MethodShare> shares_of(const SetTable& table, const std::vector<std:
     return a.success != b.success ? a.success > b.success : time(a) < time(b);
   });
   return shares;
-}
-
-std::string range_text(const std::vector<double>& ends, std::size_t bin) {
-  const std::string from = to_text(bin == 0 ? 0 : ends[bin - 1]);
-  return std::isinf(ends[bin]) ? from + " and more" : from + " to " + to_text(ends[bin]);
 }
 
 }  // namespace
@@ -138,8 +126,10 @@ std::vector<SetTable> set_tables(const std::vector<StudyResults>& studies) {
   return tables;
 }
 
-std::string correct_share_text(std::size_t bin) { return range_text(kCorrectShares, bin) + " %"; }
-std::string match_count_text(std::size_t bin) { return range_text(kMatchCounts, bin); }
+std::string match_count_text(std::size_t bin) {
+  const std::string from = to_text(bin == 0 ? 0 : kMatchCounts[bin - 1]);
+  return std::isinf(kMatchCounts[bin]) ? from + " and more" : from + " to " + to_text(kMatchCounts[bin]);
+}
 
 MethodChoice choose_method(const SetTable& table) {
   MethodChoice choice;
@@ -150,7 +140,7 @@ MethodChoice choose_method(const SetTable& table) {
   for (std::size_t row = 0; row < table.pairs.size(); ++row) {
     all.push_back(row);
     if (std::isnan(table.correct_share[row]) || std::isnan(table.matches[row])) continue;
-    rows[bin_of(kCorrectShares, 100 * table.correct_share[row])][bin_of(kMatchCounts, table.matches[row])].push_back(row);
+    rows[correct_share_bin(table.correct_share[row])][match_count_bin(table.matches[row])].push_back(row);
   }
   choice.methods = shares_of(table, all);
   for (const MethodShare& each : choice.methods)

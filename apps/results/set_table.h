@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/results/study_results.h"
+#include "apps/results/success_share.h"
 
 namespace corral {
 
@@ -27,24 +28,20 @@ struct SetTable {
 /// experiment with the most methods, of these from the first, at its first level. Experiments of times are left out.
 std::vector<SetTable> set_tables(const std::vector<StudyResults>& studies);
 
-/// A share of pairs with its Wilson interval of 95 %.
-struct MethodShare {
+/// Of a method, over the pairs on which it was tried.
+struct MethodShare : SuccessShare {
   std::string method;
-  int pairs = 0;  ///< on which the method was tried
-  double success = 0, low = 0, high = 0;
   std::optional<double> median_ms;
 };
 
 /// Pairs with a like share of correct matches and number of matches.
 struct ChoiceCell {
   int pairs = 0;
-  std::vector<MethodShare> best;  ///< the best, then those that these pairs do not tell from it: their interval holds its share
+  std::vector<MethodShare> best;  ///< the best, then those not distinguishable from it: their interval holds its share
 };
 
-/// Upper ends of the bins: of the share of correct matches in per cent, and of the number of matches; the first begins at 0, the
-/// last holds what is beyond it too.
-extern const std::vector<double> kCorrectShares, kMatchCounts;
-std::string correct_share_text(std::size_t bin);
+/// Bins of the number of matches, by their upper ends; the first begins at 0, the last has no end.
+extern const std::vector<double> kMatchCounts;
 std::string match_count_text(std::size_t bin);
 
 /// Which method to use on a data set.

@@ -15,7 +15,7 @@ namespace {
 /// The judged rows of an experiment, over all levels.
 struct Judged {
   std::vector<std::string> pairs;
-  RowNumbers shares;  ///< of correct matches, per cent
+  RowNumbers shares;  ///< of correct matches
 };
 
 Judged judged_of(const ExperimentTable& table) {
@@ -25,7 +25,7 @@ Judged judged_of(const ExperimentTable& table) {
     for (std::size_t row = 0; row < level.pairs.size(); ++row) {
       if (level.roles[row] != PairRole::Judged) continue;
       judged.pairs.push_back(level.level.label + " " + level.pairs[row]);
-      judged.shares.push_back(share == level.of_pairs.end() ? std::nan("") : 100 * share->second[row]);
+      judged.shares.push_back(share == level.of_pairs.end() ? std::nan("") : share->second[row]);
     }
   }
   return judged;
@@ -54,16 +54,6 @@ std::optional<double> mean_if_any(const RowNumbers& numbers) {
   return std::isnan(mean) ? std::nullopt : std::optional<double>(mean);
 }
 
-BoardShare share_of(const RowNumbers& success) {
-  BoardShare share;
-  double sum = 0;
-  for (const double each : success)
-    if (!std::isnan(each)) sum += each, ++share.tables;
-  if (share.tables > 0) share.success = sum / share.tables;
-  std::tie(share.low, share.high) = wilson_interval(sum, share.tables);
-  return share;
-}
-
 std::optional<double> median_time(const std::vector<StudyRecord>& records, const ExperimentInfo& info,
                                   const std::string& method, std::optional<double> StudyRecord::*time) {
   std::vector<double> times;
@@ -79,15 +69,13 @@ BoardRow row_of(const StudyResults& study, const ExperimentTable& table, const J
   row.method = method;
   row.is_submitted = table.info.titles.count(method) > 0;
   const RowNumbers success = numbers_of(table, method, "success_5pr");
-  row.all = share_of(success);
-  double from = 0;
-  for (const double to : kCorrectShares) {
-    RowNumbers within;
-    for (std::size_t i = 0; i < success.size(); ++i)
-      if (judged.shares[i] >= from && (judged.shares[i] < to || to == kCorrectShares.back())) within.push_back(success[i]);
-    const BoardShare share = share_of(within);
-    row.by_share.push_back(share.tables > 0 ? std::optional<BoardShare>(share) : std::nullopt);
-    from = to;
+  row.all = success_share(success);
+  std::vector<RowNumbers> by_share(kCorrectShares.size());
+  for (std::size_t i = 0; i < success.size(); ++i)
+    if (!std::isnan(judged.shares[i])) by_share[correct_share_bin(judged.shares[i])].push_back(success[i]);
+  for (const RowNumbers& within : by_share) {
+    const SuccessShare share = success_share(within);
+    row.by_share.push_back(share.pairs > 0 ? std::optional<SuccessShare>(share) : std::nullopt);
   }
   row.precision = mean_if_any(numbers_of(table, method, "precision"));
   row.recall = mean_if_any(numbers_of(table, method, "recall"));
@@ -103,14 +91,14 @@ BoardRow row_of(const StudyResults& study, const ExperimentTable& table, const J
 
 void rank(Board& board) {
   std::stable_sort(board.rows.begin(), board.rows.end(), [](const BoardRow& a, const BoardRow& b) {
-    const auto place = [](const BoardRow& row) { return row.method == "oracle" ? 0 : row.all.tables > 0 ? 1 : 2; };
+    const auto place = [](const BoardRow& row) { return row.method == "oracle" ? 0 : row.all.pairs > 0 ? 1 : 2; };
     if (place(a) != place(b)) return place(a) < place(b);
     return a.all.success != b.all.success ? a.all.success > b.all.success : a.method < b.method;
   });
   int place = 0;
   const BoardRow* before = nullptr;
   for (BoardRow& row : board.rows) {
-    if (row.method == "oracle" || row.all.tables == 0) continue;
+    if (row.method == "oracle" || row.all.pairs == 0) continue;
     ++place;
     row.rank = before && before->all.success == row.all.success ? before->rank : place;
     before = &row;

@@ -6,24 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/results/set_table.h"
+#include "apps/results/study_results.h"
+#include "apps/results/success_share.h"
 
 namespace corral {
-
-/// A share with its Wilson interval of 95 %, over so many tables; nothing without one.
-struct BoardShare {
-  double success = 0;
-  int tables = 0;
-  double low = 0, high = 0;
-};
 
 /// A method on a board.
 struct BoardRow {
   std::string method;
   bool is_submitted = false;  ///< its answers came in files
   int rank = 0;               ///< by success, from 1; equal shares have the same; 0: it applies to no table
-  BoardShare all;
-  std::vector<std::optional<BoardShare>> by_share;  ///< by the share of correct matches, one for each of kCorrectShares
+  SuccessShare all;
+  std::vector<std::optional<SuccessShare>> by_share;  ///< by the share of correct matches, one for each of kCorrectShares
   std::optional<double> precision, recall, f1, confidence;
   std::optional<double> median_ms;
   bool is_time_stated = false;  ///< by the method, not taken by Corral

@@ -51,9 +51,9 @@ std::string cell(const std::optional<double>& value, int decimals) {
 }
 
 /// A share with its interval behind it, and a bar.
-std::string share_cell(const std::optional<BoardShare>& share) {
+std::string share_cell(const std::optional<SuccessShare>& share) {
   if (!share) return "<td class=\"none\" data-value=\"\">-</td>";
-  return "<td class=\"share\" data-value=\"" + to_text(share->success) + "\" title=\"" + std::to_string(share->tables) +
+  return "<td class=\"share\" data-value=\"" + to_text(share->success) + "\" title=\"" + std::to_string(share->pairs) +
          " tables, 95 %: " + fixed(share->low, 2) + " to " + fixed(share->high, 2) + "\"><span class=\"bar\" style=\"--share:" + fixed(share->success, 4) +
          "\"></span><span class=\"number\">" + fixed(share->success, 2) + "</span></td>";
 }
@@ -83,7 +83,7 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
   std::string table = "<p>" + std::to_string(board.tables) +
                       " tables. Success: the refined pose has a mean error of at most 5 pr; its Wilson interval of 95 % is in the last columns. "
                       "MB: peak memory for 10,000 matches. "
-                      "Columns in per cent: the tables with that share of correct matches. Shaded: methods that the tables do not tell from "
+                      "Columns in per cent: the tables with that share of correct matches. Shaded: methods not distinguishable from "
                       "the best (their interval holds its share). Choose a header to sort.</p>\n<div class=\"wide\"><table class=\"sortable\">\n<thead><tr>" +
                       head("rank") + head("method", false) + head("success");
   std::vector<std::size_t> bins;  // with any table
@@ -104,7 +104,7 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
     table += std::string("<tr") + (is_oracle ? " class=\"oracle\"" : is_tie ? " class=\"tie\"" : "") + "><td data-value=\"" +
              (is_ranked ? std::to_string(row.rank) : "") + "\">" + (is_ranked ? std::to_string(row.rank) : "") +
              "</td><th scope=\"row\">" + (is_oracle ? "all correct matches" : link(card_name(row.method), row.method, known.title)) + "</th>" +
-             share_cell(row.all.tables > 0 ? std::optional<BoardShare>(row.all) : std::nullopt);
+             share_cell(row.all.pairs > 0 ? std::optional<SuccessShare>(row.all) : std::nullopt);
     for (const std::size_t bin : bins) table += share_cell(row.by_share[bin]);
     table += cell(row.precision, 3) + cell(row.recall, 3) + cell(row.f1, 3) + cell(row.median_ms, 2);
     if (has_confidence(board)) table += cell(row.confidence, 3);
@@ -131,7 +131,7 @@ std::string weak_spot(const Board& board, const BoardRow& row) {
       if (behind <= most) continue;
       most = behind;
       text = "On tables with " + correct_share_text(bin) + " correct matches it registers " + fixed(row.by_share[bin]->success, 2) + ", " +
-             other.method + " " + fixed(other.by_share[bin]->success, 2) + " (" + std::to_string(row.by_share[bin]->tables) + " tables).";
+             other.method + " " + fixed(other.by_share[bin]->success, 2) + " (" + std::to_string(row.by_share[bin]->pairs) + " tables).";
     }
   }
   return text.empty() ? "No method is ahead of it at any share of correct matches." : text;
@@ -159,7 +159,7 @@ std::string card_page(const std::string& method, const std::vector<Board>& board
     const BoardRow* row = board.row_of(method);
     if (!row) continue;
     body += "<h2>" + link(page_name(board), board.title + ", " + board.dataset) + "</h2>\n<p>" +
-            (row->rank > 0 ? "Rank " + std::to_string(row->rank) : "Not ranked, as it applies to no table") + ": registers " + fixed(row->all.success, 2) + " of " + std::to_string(row->all.tables) + " tables (95 %: " +
+            (row->rank > 0 ? "Rank " + std::to_string(row->rank) : "Not ranked, as it applies to no table") + ": registers " + fixed(row->all.success, 2) + " of " + std::to_string(row->all.pairs) + " tables (95 %: " +
             fixed(row->all.low, 2) + " to " + fixed(row->all.high, 2) + ")" +
             (row->is_submitted ? "; its answers were submitted" : "") + ".</p>\n<p>" + html(weak_spot(board, *row)) + "</p>\n";
   }
@@ -172,7 +172,7 @@ std::string index_page(const std::vector<Board>& boards) {
                      "scope=\"col\">methods</th><th scope=\"col\">first</th><th scope=\"col\">success</th></tr></thead>\n<tbody>\n";
   for (const Board& board : boards) {
     std::string first;
-    std::optional<BoardShare> share;
+    std::optional<SuccessShare> share;
     for (const BoardRow& row : board.rows)
       if (row.rank == 1) first += (first.empty() ? "" : ", ") + link(card_name(row.method), row.method), share = row.all;
     body += "<tr><th scope=\"row\">" + link(page_name(board), board.title + ", " + board.dataset) + "</th><td>" + std::to_string(board.tables) +
@@ -182,9 +182,9 @@ std::string index_page(const std::vector<Board>& boards) {
   return page("Scoreboard of correspondence groupers", body + "</tbody></table></div>\n");
 }
 
-Json json_of(const std::optional<BoardShare>& share) {
+Json json_of(const std::optional<SuccessShare>& share) {
   if (!share) return nullptr;
-  return {{"success", share->success}, {"tables", share->tables}, {"low", share->low}, {"high", share->high}};
+  return {{"success", share->success}, {"tables", share->pairs}, {"low", share->low}, {"high", share->high}};
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 
 std::string table_of(const Dataset& dataset, const DatasetPair& pair) {
   if (pair.matches.empty())
-    throw IoError(dataset.path("pairs.csv"), pair.name, "has no table of matches, expected one in the column matches; 'corral dataset make tables' makes tables of surfaces");
+    throw IoError(dataset.path("pairs.csv"), pair.name, "has no table of matches, expected one in the column matches; 'corral dataset make tables' makes them from surfaces");
   return dataset.path(pair.matches);
 }
 

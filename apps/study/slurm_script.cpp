@@ -43,7 +43,7 @@ constexpr char kWatch[] =
     "    state=$(squeue -h -j \"$task\" -o %T)\n"
     "    if [ -n \"$state\" ] && [ \"$state\" != RUNNING ]; then break; fi\n"
     "    if [ -n \"$state\" ]; then\n"
-    "      echo \"ended with status $status: back into the queue\"\n"
+    "      echo \"exited with status $status: requeued\"\n"
     "      if scontrol requeue \"$task\"; then break; fi\n"
     "    fi\n"
     "    sleep 2\n"

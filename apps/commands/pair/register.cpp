@@ -120,12 +120,12 @@ void draw(const Settings& settings, const Surfaces& surfaces, const RigidTransfo
 void write_outputs(const Settings& settings, const std::optional<Surfaces>& surfaces, const RigidTransform& pose, double probability) {
   const std::vector<std::string> outputs = outputs_of(settings);
   const bool is_asked = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) { return !output.empty(); });
+  if (probability < settings.least_confidence) return say("note: the probability is below --least-confidence: no file was written");
   if (!is_asked) return;
-  if (probability < settings.least_confidence) return say("note: nothing was written: the probability is below --least-confidence");
   if (!settings.output.empty()) write_file(settings.output, transform_text(pose));
   if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
   if (!settings.picture.empty()) draw(settings, *surfaces, pose, probability);
-  if (probability < kDoubted) say("note: the pose was written although it is not one to use");
+  if (probability < kDoubted) say("note: the files were written, but the pose is not to be used");
 }
 
 int register_two(Settings settings) {
@@ -208,8 +208,8 @@ void add_register(CLI::App& app, Action& action) {
       "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole surfaces;\n"
       "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from there, and poses\n"
       "are dropped that put points in front of what the other one saw.\n"
-      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those within 5 pr of the pose; a few suffice where\n"
-      "the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
+      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 pr; a few are\n"
+      "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
       "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other sensor saw.\n"
       "Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
       "Examples:\n  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"

@@ -200,8 +200,8 @@ void add_calibrate(CLI::App& app, Action& action) {
   command->footer(
       "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose is right if its\n"
       "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the pairs of\n"
-      "every object by a model of the others. Of a study, its pairs are taken as it matched them: the model is one for that detector and\n"
-      "descriptor. The program must be the one that made the study.\n"
+      "every object by a model of the others. The pairs of a study are matched as the study matched them, so that the\n"
+      "model is one for its detector and descriptor. The study must have been made by this version of the program.\n"
       "Examples:\n  corral calibrate runs/overlap runs/clutter -o confidence.toml\n  corral calibrate data/u3m data/u3or --test my-scans -o confidence.toml");
   command->callback([settings, &action] { action = [settings] { return calibrate(*settings); }; });
 }

@@ -130,8 +130,8 @@ void add_plan(CLI::App& app, Action& action) {
       ->type_name("FOLDER");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
-      "Nothing is evaluated: times and memory are estimated from the sizes of the files. What a plug-in or another program\n"
-      "takes is not known: it counts as a fast grouper without memory, unless --like has its times.\n"
+      "Nothing is evaluated: times and memory are estimated from the sizes of the files. The cost of a plug-in\n"
+      "or another program is unknown: it counts as a fast grouper that needs no memory, unless --like has its times.\n"
       "Examples:\n  corral plan noise clutter --data data --shards 20\n"
       "  corral plan noise clutter --data data --shards 20 --like runs/clutter --scaling plan");
   command->callback([settings, &action] { action = [settings] { return plan(*settings); }; });

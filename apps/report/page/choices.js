@@ -82,7 +82,7 @@ const choices = (() => {
       return element(
           'td', {class: 'text choice'}, element('strong', {}, labelOf(best.method)), ` ${fixed(best.success, 2)} (${interval(best)})`, element('br'),
           element('span', {class: 'quiet'}, `${counted(cell.pairs, 'pair')}${
-              ties.length ? `; not told apart: ${ties.map(t => labelOf(t.method)).join(', ')}` : ''}`));
+              ties.length ? `; not distinguishable: ${ties.map(t => labelOf(t.method)).join(', ')}` : ''}`));
     };
     return element(
         'div', {class: 'wide'},

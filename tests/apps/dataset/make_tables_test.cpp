@@ -35,6 +35,17 @@ TEST(MakeTables, HasTheMatchesOfItsSurfacesWithTruthsAndAttributes) {
   EXPECT_EQ(place.corral("dataset make tables --data data/b3r -o tables").status, 3) << "made in another way";
 }
 
+TEST(MakeTables, APairThatHasATableKeepsIt) {
+  const Workplace place;
+  put_small_dataset(place);
+  ASSERT_EQ(place.corral("dataset make tables --data data/b3r -o first --detector uniform").status, 0);
+  ASSERT_EQ(place.corral("dataset make tables --data first -o second").status, 0);
+  for (const DatasetPair& pair : read_dataset(place / "second").pairs)
+    EXPECT_EQ(place.text("second/" + pair.matches), place.text("first/" + pair.matches)) << pair.name;
+  put_text(place / "first/truth/m1-0.05.txt", "1 0 0 1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_EQ(place.corral("dataset make tables --data first -o second").status, 3) << "with another truth";
+}
+
 TEST(MakeTables, LeadsToAScoreboard) {
   const Workplace place;
   put_small_dataset(place);

@@ -139,7 +139,7 @@ TEST(Register, WritesNothingThatIsLessProbableThanAskedFor) {
   const std::string call = "register --matches matches.csv -o pose.txt --least-confidence ";
   const auto refused = place.corral(call + to_text((1 + probability) / 2));
   EXPECT_EQ(refused.status, 4);
-  EXPECT_THAT(refused.err, ::testing::HasSubstr("nothing was written"));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("no file was written"));
   EXPECT_FALSE(std::filesystem::exists(place / "pose.txt"));
   const auto written = place.corral(call + to_text(probability / 2));
   EXPECT_EQ(written.status, 0);
@@ -155,7 +155,7 @@ TEST(Register, ADoubtfulPoseIsWrittenWithAWord) {
   const auto outcome = place.corral("register --matches chance.csv -o pose.txt");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("do not use it"));
-  EXPECT_THAT(outcome.err, ::testing::HasSubstr("note: the pose was written although it is not one to use"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("note: the files were written, but the pose is not to be used"));
 }
 
 TEST(Register, ATableWillDoAndWhatIsWrongIsSaid) {

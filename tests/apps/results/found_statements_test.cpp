@@ -36,7 +36,7 @@ StudyFolder mixed_study() {
 TEST(FoundStatements, CompareSuccessOnTheSamePairs) {
   const std::vector<FoundStatement> found = found_in(mixed_study());
   ASSERT_EQ(found.size(), 5U);
-  EXPECT_EQ(found[0].text, "The refinement raises the share of pairs that gc registers: 0.55 against 0.25");
+  EXPECT_EQ(found[0].text, "Refinement raises the share of pairs that gc registers: 0.55 against 0.25");
   EXPECT_NEAR(found[0].margin, 0.3, 1e-12);
   EXPECT_EQ(found[0].pairs, 40);
   EXPECT_TRUE(found[0].is_clear());

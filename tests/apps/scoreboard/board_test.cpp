@@ -59,7 +59,7 @@ TEST(Board, RanksBySuccessAndEqualsShareARank) {
   EXPECT_EQ(gc.by_share[1]->success, 1) << "1 to 2 %";
   EXPECT_EQ(gc.by_share[2]->success, 0.5) << "2 to 5 %";
   EXPECT_FALSE(gc.by_share[0]);
-  EXPECT_EQ(gc.by_share[5]->tables, 1);
+  EXPECT_EQ(gc.by_share[5]->pairs, 1);
   EXPECT_EQ(gc.median_ms, 2);
 }
 

@@ -106,7 +106,7 @@ TEST(SlurmScript, AShardThatASignalEndedGoesBackIntoTheQueue) {
   const std::string back = "requeue 17_3\n";
   const ScriptRun killed = run_shard("kill -KILL $$", "");
   EXPECT_EQ(killed.status, 128 + 9);
-  EXPECT_THAT(killed.log, HasSubstr("status 137: back into the queue\n" + back));
+  EXPECT_THAT(killed.log, HasSubstr("status 137: requeued\n" + back));
   EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=4").log, HasSubstr(back));
   EXPECT_THAT(run_shard("kill -KILL $$", "SLURM_RESTART_COUNT=5").log, Not(HasSubstr(back))) << "not for ever";
   EXPECT_THAT(run_shard("kill -KILL $$", "", "COMPLETING").log, Not(HasSubstr(back))) << "a user has cancelled it";
@@ -126,7 +126,7 @@ TEST(SlurmScript, ASignalOfSlurmReachesTheProgramWhichEndsInOrder) {
   const ScriptRun ended =
       run_shard("trap 'sleep 0.3; echo in order; exit 143' TERM; kill -TERM $PPID; while :; do sleep 0.05; done", "");
   EXPECT_EQ(ended.status, 143);
-  EXPECT_THAT(ended.log, HasSubstr("in order\nended with status 143: back into the queue\nrequeue 17_3\n"));
+  EXPECT_THAT(ended.log, HasSubstr("in order\nexited with status 143: requeued\nrequeue 17_3\n"));
 }
 
 TEST(SlurmScript, SubmitsFromTheFolderOfTheScriptsAndMergesBehindTheArray) {

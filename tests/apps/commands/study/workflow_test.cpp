@@ -65,6 +65,7 @@ TEST_F(Workflow, EveryEngineGivesThePlugInsOfAStudyToItsMerge) {
   const std::string plugin = "--plugin " CORRAL_LENGTHS_PLUGIN;
   ASSERT_EQ(place_.corral("evaluate 'a test.toml' --data data -o whole " + plugin).status, 0);
   const std::map<std::string, std::string> expected = lasting_files(place_, "whole");
+  EXPECT_THAT(expected.at("records.csv"), ::testing::HasSubstr(",lengths,"));
   if (has("parallel")) {
     EXPECT_EQ(run(kSource + "/apps/workflow/parallel 2 'of parallel' 'a test.toml' --data data " + plugin), 0) << place_.text("log");
     EXPECT_EQ(lasting_files(place_, "of parallel"), expected);

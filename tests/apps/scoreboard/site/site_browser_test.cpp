@@ -24,7 +24,7 @@ BoardRow row_of(const std::string& method, int rank, double success) {
   row.rank = rank;
   row.all = {success, 20, success - 0.1, success + 0.1};
   row.by_share.assign(kCorrectShares.size(), std::nullopt);
-  row.by_share.front() = BoardShare{success / 2, 10, 0, 1};
+  row.by_share.front() = SuccessShare{success / 2, 10, 0, 1};
   row.precision = 1 - success, row.median_ms = 100 * success;
   return row;
 }
