@@ -15,7 +15,8 @@ Json to_json(const Topology& topology) {
           {"isolated", topology.isolated_vertices},
           {"degenerate_faces", topology.degenerate_faces},
           {"misoriented_faces", topology.misoriented_faces},
-          {"non_manifold_faces", topology.non_manifold_faces}};
+          {"non_manifold_edges", topology.non_manifold_edges},
+          {"non_manifold_vertices", topology.non_manifold_vertices}};
 }
 
 Json to_json(const SurfaceReport& report) {
@@ -41,7 +42,8 @@ std::string oddities(const Topology& topology) {
                                     {topology.isolated_vertices, "isolated vertices"},
                                     {topology.degenerate_faces, "faces without area"},
                                     {topology.misoriented_faces, "misoriented faces"},
-                                    {topology.non_manifold_faces, "non-manifold faces"}})
+                                    {topology.non_manifold_edges, "non-manifold edges"},
+                                    {topology.non_manifold_vertices, "non-manifold vertices"}})
     if (count > 0) text += ", " + std::to_string(count) + " " + what;
   return text;
 }

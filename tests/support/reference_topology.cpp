@@ -10,6 +10,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -33,52 +34,58 @@ Triangles sound_triangles(const Mesh& mesh, Topology& topology) {
   }
   topology.degenerate_faces = static_cast<int>(mesh.triangles.rows()) - static_cast<int>(sound.size());
   Triangles triangles = mesh.triangles(sound, Eigen::all);
-  const Indices against = wound_against_majority(triangles, sides_across(triangles, mesh.vertices.rows()));
+  const Indices against = wound_against_majority(triangles, join_sides(triangles, mesh.vertices.rows()).across);
   for (const int face : against) std::swap(triangles(face, 1), triangles(face, 2));
   topology.misoriented_faces = static_cast<int>(against.size());
   return triangles;
 }
 
-HalfEdgeMesh half_edges(const Mesh& mesh, Topology& topology) {
-  const Triangles triangles = sound_triangles(mesh, topology);
-  HalfEdgeMesh half;
-  for (const auto& place : mesh.vertices.rowwise()) half.add_vertex({place.x(), place.y(), place.z()});
-  omerr().disable();
-  for (const auto& face : triangles.rowwise())
-    topology.non_manifold_faces += !half.add_face(OpenMesh::VertexHandle(face(0)), OpenMesh::VertexHandle(face(1)),
-                                                  OpenMesh::VertexHandle(face(2)))
-                                        .is_valid();
-  omerr().enable();
-  return half;
+using Edges = std::map<std::pair<int, int>, std::vector<std::pair<int, bool>>>;  // triangles, and whether they run upwards
+
+Edges edges_of(const Triangles& triangles) {
+  Edges edges;
+  for (int face = 0; face < static_cast<int>(triangles.rows()); ++face)
+    for (int i = 0; i < 3; ++i) {
+      const int from = triangles(face, i), to = triangles(face, (i + 1) % 3);
+      edges[{std::min(from, to), std::max(from, to)}].push_back({face, from < to});
+    }
+  return edges;
 }
 
-/// By flooding over the edges.
-int count_components(const HalfEdgeMesh& half) {
-  std::vector<char> seen(half.n_vertices(), 0);
-  int components = 0;
-  for (const auto seed : half.vertices()) {
-    if (seen[static_cast<std::size_t>(seed.idx())]++ || half.is_isolated(seed)) continue;
-    ++components;
-    for (std::vector<OpenMesh::SmartVertexHandle> open{seed}; !open.empty();) {
-      const auto vertex = open.back();
-      open.pop_back();
-      for (const auto other : vertex.vertices())
-        if (!seen[static_cast<std::size_t>(other.idx())]++) open.push_back(other);
+/// Whether the triangles around a vertex are one fan: joined across edges of two that run opposite ways along them.
+bool is_one_fan(const Triangles& triangles, const Edges& edges, int vertex) {
+  std::set<int> around;
+  for (int face = 0; face < static_cast<int>(triangles.rows()); ++face)
+    if ((triangles.row(face).array() == vertex).any()) around.insert(face);
+  if (around.empty()) return true;
+  std::vector<int> open{*around.begin()};
+  for (around.erase(around.begin()); !open.empty();) {
+    const int face = open.back();
+    open.pop_back();
+    for (const auto& [edge, sides] : edges) {
+      if (edge.first != vertex && edge.second != vertex) continue;
+      if (sides.size() > 2 || (sides.size() == 2 && sides[0].second == sides[1].second)) return false;
+      for (std::size_t i = 0; i < 2 && sides.size() == 2; ++i)
+        if (sides[i].first == face && around.erase(sides[1 - i].first) > 0) open.push_back(sides[1 - i].first);
     }
   }
-  return components;
+  return around.empty();
 }
 
-int count_boundary_loops(const HalfEdgeMesh& half) {
-  std::vector<char> seen(half.n_halfedges(), 0);
-  int loops = 0;
-  for (const auto start : half.halfedges()) {
-    if (!start.is_boundary() || seen[static_cast<std::size_t>(start.idx())]) continue;
-    ++loops;
-    for (auto edge = start; !seen[static_cast<std::size_t>(edge.idx())]; edge = edge.next())
-      seen[static_cast<std::size_t>(edge.idx())] = 1;
+/// Triangles that share a vertex are of one component.
+int count_components(const Triangles& triangles) {
+  std::vector<std::set<int>> parts;
+  for (const auto& face : triangles.rowwise()) {
+    std::set<int> part(face.begin(), face.end());
+    std::vector<std::set<int>> others;
+    for (std::set<int>& other : parts) {
+      const bool is_met = std::any_of(face.begin(), face.end(), [&](int vertex) { return other.count(vertex) > 0; });
+      is_met ? part.merge(other) : others.push_back(other);
+    }
+    others.push_back(part);
+    parts = others;
   }
-  return loops;
+  return static_cast<int>(parts.size());
 }
 
 }  // namespace
@@ -92,21 +99,27 @@ Topology reference_topology(const Mesh& mesh) {
   std::set<int> used;
   for (const int vertex : mesh.triangles.reshaped()) used.insert(vertex);
   topology.isolated_vertices = static_cast<int>(mesh.vertices.rows()) - static_cast<int>(used.size());
-  const HalfEdgeMesh half = half_edges(mesh, topology);
-  topology.components = count_components(half);
-  topology.boundary_loops = count_boundary_loops(half);
-  double length = 0;
-  for (const auto edge : half.edges()) {
-    topology.boundary_edges += edge.is_boundary();
-    length += half.calc_edge_length(edge);
+  const Triangles triangles = sound_triangles(mesh, topology);
+  const Edges edges = edges_of(triangles);
+  for (const auto& [edge, sides] : edges) {
+    topology.boundary_edges += sides.size() == 1;
+    topology.non_manifold_edges += sides.size() > 2;
   }
-  if (half.n_edges() > 0) topology.mean_edge_length = length / static_cast<double>(half.n_edges());
+  for (int vertex = 0; vertex < static_cast<int>(mesh.vertices.rows()); ++vertex)
+    topology.non_manifold_vertices += !is_one_fan(triangles, edges, vertex);
+  topology.components = count_components(triangles);
   return topology;
 }
 
 std::vector<Indices> reference_rings(const Mesh& mesh) {
   Topology unused;
-  const HalfEdgeMesh half = half_edges(mesh, unused);
+  const Triangles triangles = sound_triangles(mesh, unused);
+  HalfEdgeMesh half;
+  for (const auto& place : mesh.vertices.rowwise()) half.add_vertex({place.x(), place.y(), place.z()});
+  omerr().disable();
+  for (const auto& face : triangles.rowwise())
+    half.add_face(OpenMesh::VertexHandle(face(0)), OpenMesh::VertexHandle(face(1)), OpenMesh::VertexHandle(face(2)));
+  omerr().enable();
   std::vector<Indices> rings(half.n_vertices());
   for (const auto edge : half.edges()) {
     rings[static_cast<std::size_t>(edge.v0().idx())].push_back(edge.v1().idx());

@@ -7,9 +7,10 @@
 
 namespace corral::testing {
 
-// The half-edges of all of a mesh, by OpenMesh: what they say of it is the definition of Topology and of its rings.
-
+/// From a list of the triangles of each edge, as slowly as it is defined.
 Topology reference_topology(const Mesh& mesh);
+
+/// From the half-edges of all of a mesh, by OpenMesh.
 std::vector<Indices> reference_rings(const Mesh& mesh);
 
 }  // namespace corral::testing

@@ -9,6 +9,7 @@
 #include "kernel/bounding_box.h"
 #include "kernel/error.h"
 #include "kernel/number_text.h"
+#include "kernel/surface/mesh/half_edges.h"
 #include "kernel/surface/mesh/topology.h"
 #include "kernel/surface/search/resolution.h"
 
@@ -19,6 +20,7 @@ struct MeshInfo {
   std::string path;
   int vertices = 0, faces = 0;
   Topology topology;
+  HalfEdgeReport half_edges;
   std::optional<PointSpacing> spacing;
   NormalGuide normals = NormalGuide::Origin;
   Eigen::RowVector3d extent = Eigen::RowVector3d::Zero();
@@ -37,7 +39,10 @@ void add_warnings(MeshInfo& info) {
   warn(info.topology.isolated_vertices, "vertices without a face");
   warn(info.topology.degenerate_faces, "faces without area: left out of components, boundary and edges");
   warn(info.topology.misoriented_faces, "faces wound against the others: normals will have the wrong sign there");
-  warn(info.topology.non_manifold_faces, "non-manifold faces");
+  warn(info.topology.non_manifold_edges, "non-manifold edges: more than two faces meet there");
+  warn(info.topology.non_manifold_vertices, "non-manifold vertices: the faces around them are not one fan");
+  warn(info.half_edges.refused_faces,
+       "non-manifold faces: a half-edge structure cannot hold them; left out of the loops and the mean edge");
   if (!info.spacing)
     info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");
 }
@@ -49,6 +54,7 @@ MeshInfo inspect(const std::string& path) {
   info.vertices = static_cast<int>(mesh.vertices.rows());
   info.faces = static_cast<int>(mesh.triangles.rows());
   info.topology = inspect_topology(mesh);
+  info.half_edges = inspect_half_edges(mesh);
   const BoundingBox box = bounding_box(mesh.vertices);
   if (box.diagonal() > 0 && std::isfinite(box.diagonal())) info.spacing = point_spacing(mesh.vertices);
   info.extent = box.high - box.low;
@@ -66,16 +72,18 @@ Json to_json(const MeshInfo& info) {
           {"faces", info.faces},
           {"components", info.topology.components},
           {"boundary_edges", info.topology.boundary_edges},
-          {"boundary_loops", info.topology.boundary_loops},
+          {"boundary_loops", info.half_edges.boundary_loops},
           {"duplicates", info.topology.duplicate_vertices},
           {"isolated", info.topology.isolated_vertices},
           {"degenerate_faces", info.topology.degenerate_faces},
           {"misoriented_faces", info.topology.misoriented_faces},
-          {"non_manifold_faces", info.topology.non_manifold_faces},
+          {"non_manifold_edges", info.topology.non_manifold_edges},
+          {"non_manifold_vertices", info.topology.non_manifold_vertices},
+          {"non_manifold_faces", info.half_edges.refused_faces},
           {"resolution", info.spacing ? Json(info.spacing->resolution) : Json(nullptr)},
           {"median_spacing", info.spacing ? Json(info.spacing->median) : Json(nullptr)},
           {"normals", corral::to_text(info.normals)},
-          {"mean_edge_length", info.faces > 0 ? Json(info.topology.mean_edge_length) : Json(nullptr)},
+          {"mean_edge_length", info.faces > 0 ? Json(info.half_edges.mean_edge_length) : Json(nullptr)},
           {"extent", {info.extent(0), info.extent(1), info.extent(2)}},
           {"diagonal", info.extent.norm()},
           {"warnings", info.warnings}};
@@ -87,12 +95,12 @@ std::string to_text(const MeshInfo& info) {
                      std::to_string(info.topology.duplicate_vertices) + " duplicates)\n  faces       " +
                      std::to_string(info.faces) + " in " + std::to_string(info.topology.components) + " components\n" +
                      "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges in " +
-                     std::to_string(info.topology.boundary_loops) + " loops\n  resolution  " +
+                     std::to_string(info.half_edges.boundary_loops) + " loops\n  resolution  " +
                      (info.spacing ? to_text(info.spacing->resolution) + " mesh units per pr (median " +
                                          to_text(info.spacing->median) + ")"
                                    : "-") +
                      "\n  normals     " + to_text(info.normals) + "\n  mean edge   " +
-                     (info.faces > 0 ? to_text(info.topology.mean_edge_length) : "-") + "\n  extent      " +
+                     (info.faces > 0 ? to_text(info.half_edges.mean_edge_length) : "-") + "\n  extent      " +
                      to_text(info.extent(0)) + " x " + to_text(info.extent(1)) + " x " + to_text(info.extent(2)) + "\n";
   for (const std::string& warning : info.warnings) text += "  warning     " + warning + "\n";
   return text;

@@ -41,10 +41,12 @@ bool all_wound_alike(const Ends& ends, const Indices& across) {
 
 }  // namespace
 
-Indices sides_across(const Triangles& triangles, Eigen::Index vertices) {
+JoinedSides join_sides(const Triangles& triangles, Eigen::Index vertices) {
   const Ends ends(triangles);
   // First the sides with the same lower vertex form a chain: fresh memory costs more than all else here.
-  Indices last(static_cast<std::size_t>(vertices), kNoSide), across(index(ends.count()));
+  JoinedSides joined{Indices(index(ends.count()))};
+  Indices& across = joined.across;
+  Indices last(static_cast<std::size_t>(vertices), kNoSide);
   for (int side = 0; side < ends.count(); ++side)
     across[index(side)] = std::exchange(last[index(ends.low(side))], side);
   struct Met {
@@ -65,10 +67,10 @@ Indices sides_across(const Triangles& triangles, Eigen::Index vertices) {
         across[index(before.side)] = side;
         continue;
       }
-      if (other >= 0) across[index(other)] = across[index(before.side)] = kManySides;
+      if (other >= 0) across[index(other)] = across[index(before.side)] = kManySides, ++joined.many_edges;
       across[index(side)] = kManySides;
     }
-  return across;
+  return joined;
 }
 
 Indices wound_against_majority(const Triangles& triangles, const Indices& across) {

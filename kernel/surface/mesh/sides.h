@@ -15,7 +15,6 @@ namespace corral {
 
 constexpr int kNoSide = -1;     ///< no other triangle has this edge
 constexpr int kManySides = -2;  ///< more than one other triangle has it
-constexpr int kLeftOut = -3;    ///< the triangle of this side itself is left out
 
 /// The vertices of a mesh by side. The triangles must outlive it.
 class Ends {
@@ -44,8 +43,13 @@ class Ends {
 /// Entry of a table by side, face or vertex.
 inline std::size_t index(int number) { return static_cast<std::size_t>(number); }
 
-/// For each side that of the triangle across its edge, or one of the first two above, however the triangles are wound.
-Indices sides_across(const Triangles& triangles, Eigen::Index vertices);
+struct JoinedSides {
+  Indices across;      ///< for each side that of the triangle across its edge, or one of the two above
+  int many_edges = 0;  ///< edges of more than two triangles
+};
+
+/// However the triangles are wound.
+JoinedSides join_sides(const Triangles& triangles, Eigen::Index vertices);
 
 /// The triangles of each part that are wound against its majority; parts join across edges of two triangles.
 Indices wound_against_majority(const Triangles& triangles, const Indices& across);

@@ -2,91 +2,56 @@
 #include "kernel/surface/mesh/topology.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/pending/disjoint_sets.hpp>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <optional>
-#include <utility>
 #include <vector>
 
-#include "kernel/rigid_transform.h"
-#include "kernel/surface/mesh/fans.h"
-#include "kernel/surface/mesh/sides.h"
+#include "kernel/surface/mesh/half_edges.h"
+#include "kernel/surface/mesh/sound_triangles.h"
 
 namespace corral {
 namespace {
 
-bool is_degenerate(const Mesh& mesh, Eigen::Index face) {
-  const int a = mesh.triangles(face, 0), b = mesh.triangles(face, 1), c = mesh.triangles(face, 2);
-  if (a == b || b == c || c == a) return true;
-  return !(triangle_area(mesh.vertices.row(a), mesh.vertices.row(b), mesh.vertices.row(c)) > 0);
+/// Whether the triangles around each vertex are not one fan wound alike.
+std::vector<char> odd_vertices(const Ends& ends, const Indices& across, Eigen::Index vertices) {
+  Indices starts(static_cast<std::size_t>(vertices), kNoSide), corners(starts.size(), 0);  // where a fan begins
+  for (int side = 0; side < ends.count(); ++side) {
+    const int other = across[index(side)];
+    int& start = starts[index(ends.from(side))];
+    ++corners[index(ends.from(side))];
+    if (other == kManySides || (other >= 0 && ends.from(other) == ends.from(side)))
+      start = starts[index(ends.to(side))] = kManySides;
+    if (start == kManySides) continue;
+    const bool is_boundary = other == kNoSide;
+    if (is_boundary && start != kNoSide && across[index(start)] == kNoSide)
+      start = kManySides;
+    else if (is_boundary || start == kNoSide)
+      start = side;
+  }
+  std::vector<char> is_odd(starts.size(), 0);
+  for (std::size_t vertex = 0; vertex < starts.size(); ++vertex) {
+    int side = starts[vertex];
+    if (side >= 0) do {
+        --corners[vertex];
+        side = across[index(ends.before(side))];
+      } while (side >= 0 && side != starts[vertex]);
+    is_odd[vertex] = starts[vertex] == kManySides || (starts[vertex] >= 0 && corners[vertex] > 0);
+  }
+  return is_odd;
 }
 
-/// The triangles of a mesh without degenerate ones, wound alike and joined. They are copied only if any must change.
-class SoundTriangles {
- public:
-  explicit SoundTriangles(const Mesh& mesh) : given_(mesh.triangles) {
-    Indices sound;
-    for (int face = 0; face < static_cast<int>(given_.rows()); ++face) degenerate_ += is_degenerate(mesh, face);
-    if (degenerate_ > 0) {
-      for (int face = 0; face < static_cast<int>(given_.rows()); ++face)
-        if (!is_degenerate(mesh, face)) sound.push_back(face);
-      changed_ = given_(sound, Eigen::all);
-    }
-    Indices across = sides_across(triangles(), mesh.vertices.rows());
-    const Indices against = wound_against_majority(triangles(), across);
-    reversed_ = static_cast<int>(against.size());
-    if (reversed_ > 0) {
-      if (!changed_) changed_ = given_;
-      for (const int face : against) std::swap((*changed_)(face, 1), (*changed_)(face, 2));
-      across = sides_across(*changed_, mesh.vertices.rows());
-    }
-    joined_ = join_triangles(triangles(), std::move(across), mesh.vertices.rows());
-  }
-
-  const Triangles& triangles() const { return changed_ ? *changed_ : given_; }
-  const JoinedTriangles& joined() const { return joined_; }
-  int degenerate() const { return degenerate_; }
-  int reversed() const { return reversed_; }
-
-  /// Calls visit(side) once for each edge, in the order in which the triangles first name them.
-  template <class Visitor>
-  void visit_edges(Visitor&& visit) const {
-    constexpr int kFaces = 256;
-    const Ends ends(triangles());
-    std::array<int, 3 * kFaces> block;  // gathered first: which side is first to name an edge, no processor can guess
-    for (int face = 0; face < ends.faces();) {
-      std::size_t count = 0;
-      for (const int behind = std::min(ends.faces(), face + kFaces); face < behind; ++face)
-        for (const int side : ends.sides_of(face)) {
-          const int other = joined_.across[index(side)];
-          block[count] = side;
-          count += other == kNoSide || (other >= 0 && face < ends.face(other));
-        }
-      for (std::size_t i = 0; i < count; ++i) visit(block[i]);
-    }
-  }
-
- private:
-  const Triangles& given_;
-  std::optional<Triangles> changed_;
-  JoinedTriangles joined_;
-  int degenerate_ = 0, reversed_ = 0;
-};
-
 /// Parts that share no vertex.
-int count_components(const Ends& ends, const Indices& across, Eigen::Index vertices) {
+int count_components(const Ends& ends, Eigen::Index vertices) {
   Indices rank(static_cast<std::size_t>(vertices)), parent(rank.size(), kNoSide);
   boost::disjoint_sets<int*, int*> sets(rank.data(), parent.data());
   int components = 0;
   for (int face = 0; face < ends.faces(); ++face) {
-    if (across[index(face)] == kLeftOut) continue;
     int first = kNoSide;
     for (const int side : ends.sides_of(face)) {
       const int vertex = ends.from(side);
       if (parent[index(vertex)] == kNoSide) sets.make_set(vertex), ++components;
+      if (parent[index(vertex)] == first) continue;
       const int other = sets.find_set(vertex);
       if (first == kNoSide) first = other;
       if (first == other) continue;
@@ -96,22 +61,6 @@ int count_components(const Ends& ends, const Indices& across, Eigen::Index verti
     }
   }
   return components;
-}
-
-int count_boundary_loops(const Ends& ends, const JoinedTriangles& joined) {
-  std::vector<char> seen(joined.across.size(), 0);
-  const auto following = [&](int side) {
-    const int start = joined.starts[index(ends.to(side))];
-    if (start != kManySides) return start;
-    return std::lower_bound(joined.following.begin(), joined.following.end(), std::pair(side, 0))->second;
-  };
-  int loops = 0;
-  for (int first = 0; first < ends.count(); ++first) {
-    if (joined.across[index(first)] != kNoSide || seen[index(first)]) continue;
-    ++loops;
-    for (int side = first; !seen[index(side)]; side = following(side)) seen[index(side)] = 1;
-  }
-  return loops;
 }
 
 /// Vertices at the place of an earlier one. By a table of hashes; where that is crowded, by sorting.
@@ -155,12 +104,16 @@ Points distinct_points(const Points& points) {
 
 std::vector<Indices> vertex_rings(const Mesh& mesh) {
   const SoundTriangles sound(mesh);
-  const Ends ends(sound.triangles());
-  std::vector<Indices> rings(static_cast<std::size_t>(mesh.vertices.rows()));
-  sound.visit_edges([&](int side) {
+  const Indices& across = sound.joined().across;
+  const Ends ends(sound());
+  const std::vector<char> is_odd = odd_vertices(ends, across, mesh.vertices.rows());
+  if (std::find(is_odd.begin(), is_odd.end(), 1) != is_odd.end()) return half_edge_rings(sound(), mesh.vertices.rows());
+  std::vector<Indices> rings(is_odd.size());
+  for (int side = 0; side < ends.count(); ++side) {
+    if (across[index(side)] > side) continue;  // an edge is named by its later side, or its only one
     rings[index(ends.from(side))].push_back(ends.to(side));
     rings[index(ends.to(side))].push_back(ends.from(side));
-  });
+  }
   for (Indices& ring : rings) std::sort(ring.begin(), ring.end());
   return rings;
 }
@@ -173,21 +126,15 @@ Topology inspect_topology(const Mesh& mesh) {
   for (const int vertex : mesh.triangles.reshaped()) used[static_cast<std::size_t>(vertex)] = 1;
   topology.isolated_vertices = static_cast<int>(std::count(used.begin(), used.end(), 0));
   const SoundTriangles sound(mesh);
+  const Indices& across = sound.joined().across;
+  const Ends ends(sound());
   topology.degenerate_faces = sound.degenerate();
   topology.misoriented_faces = sound.reversed();
-  topology.non_manifold_faces = sound.joined().left_out;
-  const Ends ends(sound.triangles());
-  topology.components = count_components(ends, sound.joined().across, mesh.vertices.rows());
-  topology.boundary_loops = count_boundary_loops(ends, sound.joined());
-  double length = 0;
-  int edges = 0;
-  sound.visit_edges([&](int side) {
-    topology.boundary_edges += sound.joined().across[index(side)] == kNoSide;
-    const Eigen::Vector3d step = mesh.vertices.row(ends.to(side)) - mesh.vertices.row(ends.from(side));
-    length += std::sqrt(step.x() * step.x() + step.y() * step.y() + step.z() * step.z());
-    ++edges;
-  });
-  if (edges > 0) topology.mean_edge_length = length / edges;
+  topology.non_manifold_edges = sound.joined().many_edges;
+  const std::vector<char> is_odd = odd_vertices(ends, across, mesh.vertices.rows());
+  topology.non_manifold_vertices = static_cast<int>(std::count(is_odd.begin(), is_odd.end(), 1));
+  topology.components = count_components(ends, mesh.vertices.rows());
+  topology.boundary_edges = static_cast<int>(std::count(across.begin(), across.end(), kNoSide));
   return topology;
 }
 

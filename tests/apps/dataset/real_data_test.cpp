@@ -15,7 +15,7 @@
 #include "io/mesh/mesh_file.h"
 #include "io/pose/transform_file.h"
 #include "kernel/surface/mesh/perturbation.h"
-#include "kernel/surface/mesh/topology.h"
+#include "kernel/surface/mesh/half_edges.h"
 #include "tests/io/scratch.h"
 
 namespace corral {
@@ -88,7 +88,7 @@ TEST_F(PublishedData, TheNoiseOfTheStoredScenesIsMeasuredBack) {
     const Mesh model = read_mesh(dataset.path(pair.source));
     const Mesh clean = move_mesh(model, read_transform(dataset.path(pair.truth)));
     const double stated = attribute_number(dataset, pair, "stated_noise_edges").value();
-    const double edge = inspect_topology(model).mean_edge_length;
+    const double edge = inspect_half_edges(model).mean_edge_length;
     EXPECT_NEAR(noise_deviation(clean, read_mesh(pair.target)) / edge, stated, 0.05 * stated) << pair.name;
   }
 }

@@ -98,9 +98,10 @@ TEST(OddMeshes, NonManifoldEdgesAreCountedAndHarmless) {
   Triangles fins(2, 3);
   fins << ball.triangles(0, 0), ball.triangles(0, 1), 2562, ball.triangles(9, 1), ball.triangles(9, 2), 2562;
   const MatchReport report = match_with_sphere(with_faces(with_vertices(ball, points_of({{0, 0, 3}})), fins));
-  EXPECT_EQ(report.source.topology->non_manifold_faces, 2);
+  EXPECT_EQ(report.source.topology->non_manifold_edges, 2);
+  EXPECT_EQ(report.source.topology->non_manifold_vertices, 5);
   EXPECT_GT(report.matches, 10);
-  EXPECT_THAT(stage_report(report), HasSubstr("2 non-manifold faces"));
+  EXPECT_THAT(stage_report(report), HasSubstr("2 non-manifold edges, 5 non-manifold vertices"));
 }
 
 TEST(OddMeshes, FacesWoundTheOtherWayAreCounted) {

@@ -49,9 +49,9 @@ TEST(Mesh, RoughSurfacesGoThroughEveryStep) {
     EXPECT_EQ(topology.duplicate_vertices, 2);
     EXPECT_EQ(topology.isolated_vertices, 2);
     EXPECT_EQ(topology.degenerate_faces, 2);
-    EXPECT_EQ(topology.non_manifold_faces, 2);
-    EXPECT_EQ(topology.components, 2);
-    EXPECT_EQ(topology.boundary_edges, 0);
+    EXPECT_EQ(topology.non_manifold_edges, 4);
+    EXPECT_EQ(topology.components, 1);
+    EXPECT_EQ(topology.boundary_edges, 2);
     const Descriptors found = describe(mesh, point_resolution(mesh.vertices));
     EXPECT_GT(found.features.cols(), 5);
     EXPECT_TRUE(found.features.allFinite());
