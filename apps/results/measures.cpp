@@ -23,7 +23,7 @@ constexpr auto None = Average::None, Mean = Average::Mean, Median = Average::Med
 constexpr auto Quantile75 = Average::Quantile75, Quantile95 = Average::Quantile95, Scenes = Average::Scenes;
 
 Stored count(std::optional<int> R::*member) { return {member, nullptr, nullptr, nullptr}; }
-Stored number(Number R::*member) { return {nullptr, member, nullptr, nullptr}; }
+Stored number(OptionalNumber R::*member) { return {nullptr, member, nullptr, nullptr}; }
 
 Number inlier_ratio(const R& record) {
   if (!record.matches || !record.true_matches || *record.matches == 0) return std::nullopt;
@@ -76,20 +76,20 @@ Number rmse_within_20cm(const R& record) {
 }
 
 /// Recognised by ADD or ADD-S: below a tenth of the diameter.
-template <Number PoseScores::*Share>
+template <OptionalNumber PoseScores::*Share>
 Number recognised(const R& record) {
-  const Number& share = record.refined.*Share;
+  const Number share = record.refined.*Share;
   if (!share) return std::nullopt;
   return *share < kSuccessAddShare ? 1 : 0;
 }
 
-template <Number PoseScores::*Score>
+template <OptionalNumber PoseScores::*Score>
 Number of_refined(const R& record) {
   return record.refined.*Score;
 }
 
 Number area(const R& record) {
-  const Number& error = record.refined.mean_error_pr;
+  const Number error = record.refined.mean_error_pr;
   return error ? Number(success_area({error})) : std::nullopt;
 }
 
@@ -106,7 +106,7 @@ const std::vector<Measure> kOfSelections = {
      kHeadline | kFigure | kWithBounds | kYesOrNo, "aligned within 5 pr"},
     {"pooled_precision",   "pooled precision", "", 3, 1, Larger, {}, nullptr, LeftOut, Pooled, 0, "", {"correct", "selected"}},
     {"pooled_recall",      "pooled recall",    "", 3, 1, Larger, {}, nullptr, LeftOut, Pooled, 0, "", {"correct", "true_matches"}},
-    {"precision_nonempty", "precision of non-empty selections", "", 3, 1, Larger, {}, [](const R& r) { return r.precision; }, LeftOut, Mean},
+    {"precision_nonempty", "precision of non-empty selections", "", 3, 1, Larger, {}, [](const R& r) -> Number { return r.precision; }, LeftOut, Mean},
     {"inlier_ratio",       "inlier ratio",  "", 3, 1, Larger, {}, inlier_ratio, LeftOut, Mean, kOfPair},
     {"frame_share",        "frame share",   "", 3, 1, Larger, number(&R::frame_share), nullptr, LeftOut, Mean, kOfPair},
     {"keypoints_in_overlap", "keypoints in the overlap", "", 0, kAny, Larger, count(&R::keypoints_in_overlap), nullptr, LeftOut, None, kOfPair},

@@ -23,9 +23,9 @@ enum class Better { Larger, Smaller };
 /// Where a number stands in a record; nowhere if it is worked out.
 struct Stored {
   std::optional<int> StudyRecord::*count = nullptr;
-  std::optional<double> StudyRecord::*number = nullptr;
+  OptionalNumber StudyRecord::*number = nullptr;
   PoseScores StudyRecord::*pose = nullptr;
-  std::optional<double> PoseScores::*score = nullptr;  ///< of the pose
+  OptionalNumber PoseScores::*score = nullptr;  ///< of the pose
 
   bool is_anywhere() const { return count || number || pose; }
 };
@@ -72,7 +72,7 @@ const Measure& measure(const std::string& name);
 /// A measure of a pose: one behind the name of each stage stands in the table.
 struct PoseMeasure {
   const char *name, *title, *unit;
-  std::optional<double> PoseScores::*score;
+  OptionalNumber PoseScores::*score;
   bool is_summed;   ///< of the refined pose: in the summary and on the page
   bool is_on_page;  ///< of the others too
 };

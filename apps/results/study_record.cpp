@@ -49,6 +49,7 @@ template <class Value>
 std::string cell_text(const std::optional<Value>& value) {
   return value ? cell_text(*value) : std::string();
 }
+std::string cell_text(const OptionalNumber& value) { return cell_text(std::optional<double>(value)); }
 
 bool parse_cell(const std::string& cell, MethodStatus& value) {
   const auto status = parse_status(cell);
@@ -116,8 +117,11 @@ class RecordReader {
     field = column.last;
     return true;
   }
-  static bool parse(const std::string& cell, std::optional<double>& field, const Column& column) {
-    return parse_cell(cell, field) && (!field || !column.largest || (*field >= 0 && *field <= *column.largest));
+  static bool parse(const std::string& cell, OptionalNumber& field, const Column& column) {
+    std::optional<double> number;
+    if (!parse_cell(cell, number)) return false;
+    field = number;
+    return !number || !column.largest || (*number >= 0 && *number <= *column.largest);
   }
   template <class Value>
   static bool parse(const std::string& cell, Value& field, const Column&) {

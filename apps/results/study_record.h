@@ -6,18 +6,19 @@
 #include <vector>
 
 #include "apps/pair/method_status.h"
+#include "apps/results/optional_number.h"
 #include "apps/results/shared_text.h"
 
 namespace corral {
 
 /// The errors of a pose; what could not be computed is absent.
 struct PoseScores {
-  std::optional<double> rotation_error_deg, translation_error_pr;
-  std::optional<double> mean_error_pr;  ///< mean distance over the overlap, as in success curves
-  std::optional<double> rmse_pr;        ///< root mean square of the same
-  std::optional<double> add_share;      ///< mean distance of all source vertices, in diameters of the source
-  std::optional<double> mssd_share;     ///< the largest of these distances
-  std::optional<double> add_s_share;    ///< the mean with the distance to the nearest vertex
+  OptionalNumber rotation_error_deg, translation_error_pr;
+  OptionalNumber mean_error_pr;  ///< mean distance over the overlap, as in success curves
+  OptionalNumber rmse_pr;        ///< root mean square of the same
+  OptionalNumber add_share;      ///< mean distance of all source vertices, in diameters of the source
+  OptionalNumber mssd_share;     ///< the largest of these distances
+  OptionalNumber add_s_share;    ///< the mean with the distance to the nearest vertex
 };
 
 /// A row of records.csv: one grouper on one pair at one level of one experiment. "oracle" (all correct matches) and
@@ -27,19 +28,19 @@ struct StudyRecord {
   SharedText scene;  ///< of the pair (scene_of); empty if it belongs to none
   SharedText method;
   int repeat = 0;               ///< from 0
-  std::optional<double> value;  ///< of the swept attribute
+  OptionalNumber value;  ///< of the swept attribute
   MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
   SharedText truth;             ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
   std::optional<int> keypoints_in_overlap;      ///< of the matched ones; absent for a table of matches
-  std::optional<double> precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
-  std::optional<double> frame_share;            ///< share of correct matches whose frames agree within 10 degrees
-  std::optional<double> metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
+  OptionalNumber precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
+  OptionalNumber frame_share;            ///< share of correct matches whose frames agree within 10 degrees
+  OptionalNumber metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
   PoseScores initial, refined, all_rows, dense;  ///< of the fit to the selection, the refined pose, and from there
                                                  ///< over all matches and over the whole surfaces
-  std::optional<double> time_ms;                 ///< of the grouping alone
-  std::optional<double> stated_time_ms;          ///< of a method of another program, as that says
-  std::optional<double> confidence;              ///< probability that the refined pose registers the pair
+  OptionalNumber time_ms;                 ///< of the grouping alone
+  OptionalNumber stated_time_ms;          ///< of a method of another program, as that says
+  OptionalNumber confidence;              ///< probability that the refined pose registers the pair
   SharedText selection;                          ///< file of selections in the study folder; empty if there is none
 };
 

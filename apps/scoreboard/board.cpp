@@ -55,7 +55,7 @@ std::optional<double> mean_if_any(const RowNumbers& numbers) {
 }
 
 std::optional<double> median_time(const std::vector<StudyRecord>& records, const ExperimentInfo& info,
-                                  const std::string& method, std::optional<double> StudyRecord::*time) {
+                                  const std::string& method, OptionalNumber StudyRecord::*time) {
   std::vector<double> times;
   for (const StudyRecord& record : records)
     if (record.method == method && record.experiment == info.name && record.dataset == info.dataset && record.*time)

@@ -28,7 +28,7 @@ std::vector<int> counts_of(const Json& json) {
 
 Json to_json(const PoseScores& scores) {
   Json json = Json::array();
-  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_or_null(scores.*measure.score));
+  for (const PoseMeasure& measure : pose_measures()) json.push_back(json_or_null<double>(scores.*measure.score));
   return json;
 }
 

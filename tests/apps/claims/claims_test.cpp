@@ -168,7 +168,7 @@ TEST(Claims, ThresholdsRaisePrecisionOnTheSamePairs) {
   run.records.erase(std::remove_if(run.records.begin(), run.records.end(), is_lost), run.records.end());
   EXPECT_NEAR(*judge({run}).at("C38").margin, 0.04, 1e-12);  // of the four pairs left and the one of 0
   for (StudyRecord& record : run.records)
-    if (record.level == "3" && record.method == "gc") *record.precision = 0.04;
+    if (record.level == "3" && record.method == "gc") record.precision = 0.04;
   EXPECT_EQ(judge({run}).at("C38").verdict, Verdict::Fails);
 }
 

@@ -104,7 +104,7 @@ TEST_F(Page, ARunOfTimesHasATableOfItsOwn) {
   std::vector<StudyFolder> found = runs();
   found[0].experiments[0].attribute = "table_size";
   for (StudyRecord& record : found[0].records) {
-    record.time_ms.reset();
+    record.time_ms = std::nullopt;
     if (record.level == "0.2" && record.method == "gc") record.time_ms = 0.25;
   }
   const Json means = data_of(report_page(found, results_of(found)))["experiments"][0]["means"];

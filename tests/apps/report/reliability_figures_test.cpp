@@ -41,7 +41,7 @@ TEST(ReliabilityFigures, OfRecordsWithAProbabilityAndATruth) {
   EXPECT_TRUE(rated_poses("gc", {&record}).right.at(0));
   record.refined.mean_error_pr = 5.1;
   EXPECT_FALSE(rated_poses("gc", {&record}).right.at(0));
-  record.confidence.reset();
+  record.confidence = std::nullopt;
   EXPECT_TRUE(rated_poses("gc", {&record}).right.empty());
 }
 

@@ -36,7 +36,7 @@ TEST(FieldCriteria, AreInDegreesAndMetresInclusive) {
 
 TEST(FieldCriteria, AreAbsentWithoutMetresOrAPose) {
   StudyRecord record = record_with(1, 1, 0.1);
-  record.metres_per_pr.reset();
+  record.metres_per_pr = std::nullopt;
   for (const char* name : {"success_3dmatch", "success_3dmatch_rmse", "success_kitti", "success_kitti_2m"})
     EXPECT_FALSE(measure(name).of(record)) << name;
   record = record_with(1, 1, 0.1);

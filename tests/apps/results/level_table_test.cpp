@@ -107,8 +107,8 @@ TEST(LevelTable, AMethodWithoutAnAnswerHasZeroAndIsNotEmpty) {
   StudyRecord refused = record_of("a", "st", 10, 0, 0);
   refused.status = {MethodState::TooLarge, "needs 9 GB"};
   refused.selected.reset();
-  refused.recall.reset();
-  refused.f1.reset();
+  refused.recall = std::nullopt;
+  refused.f1 = std::nullopt;
   const LevelTable level = experiment_tables(run_of({refused, record_of("a", "gc", 10, 1, 1)})).at(0).levels.at(0);
   EXPECT_EQ(mean_of(level.methods.at("st").numbers.at("precision")), 0);
   EXPECT_EQ(level.methods.at("st").empty, 0);
@@ -120,7 +120,7 @@ TEST(LevelTable, AMethodWithoutAnAnswerHasZeroAndIsNotEmpty) {
 TEST(LevelTable, OfAPairWithoutATruthOnlyWhatNeedsNoneIsThere) {
   StudyRecord unknown = record_of("a", "gc", 0, 5, 0);
   unknown.true_matches.reset();
-  unknown.precision.reset();
+  unknown.precision = std::nullopt;
   unknown.correct.reset();
   const LevelTable level = experiment_tables(run_of({unknown, record_of("b", "gc", 10, 1, 1)})).at(0).levels.at(0);
   EXPECT_THAT(level.roles, ElementsAre(PairRole::Unjudged, PairRole::Judged));

@@ -71,7 +71,7 @@ TEST(Losses, WhereAPerfectSelectionFailsTheMatchesOrKeypointsDo) {
 TEST(Losses, APairThatIsExcludedFromMeansIsLostAtItsMatches) {
   StudyRecord nothing = record_of("a", "gc", {}, {}, 0), oracle = oracle_of("a", {});
   nothing.true_matches = oracle.true_matches = 0;
-  oracle.selected = oracle.correct = 0, oracle.precision.reset();
+  oracle.selected = oracle.correct = 0, oracle.precision = std::nullopt;
   EXPECT_EQ(stage_of_pair(nothing, oracle), "matches");
 }
 

@@ -88,7 +88,7 @@ TEST(Measures, OnlyJudgedPairsHaveNumbersThatNeedATruth) {
     EXPECT_THAT(counted_number(measure("selected"), record, role), IsNan());
     EXPECT_EQ(counted_number(measure("time_ms"), record, role), 2);  // that does not depend on the pair
   }
-  record.precision.reset();
+  record.precision = std::nullopt;
   EXPECT_THAT(counted_number(measure("precision"), record, PairRole::Unjudged), IsNan());
   EXPECT_THAT(counted_number(measure("success_area"), record, PairRole::Unjudged), IsNan());
   EXPECT_EQ(counted_number(measure("selected"), record, PairRole::Unjudged), 3);

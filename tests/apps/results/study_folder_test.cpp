@@ -92,7 +92,7 @@ TEST(StudyRecord, SharesAreUpToOneAndErrorsNotBelowZero) {
   EXPECT_THAT(complaint(record), HasSubstr("f1 is '1e+308'"));
   record.f1 = 0, record.frame_share = 1.5;
   EXPECT_THAT(complaint(record), HasSubstr("frame_share is '1.5'"));
-  record.frame_share.reset(), record.initial.add_share = 1.06;
+  record.frame_share = std::nullopt, record.initial.add_share = 1.06;
   EXPECT_EQ(complaint(record), "") << "ADD is a length in diameters: a pose may be farther off than one";
   record.time_ms = -1;
   EXPECT_THAT(complaint(record), HasSubstr("time_ms"));

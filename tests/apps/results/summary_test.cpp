@@ -175,7 +175,7 @@ TEST(Summary, WhatIsExcludedIsSoForAllMethods) {
 TEST(Summary, APairWithoutATruthCountsOnlyWhereNoneIsNeeded) {
   StudyRecord unknown = record_of("a", 0, 3, 0, {}), unanswered = record_of("b", 0, 3, 0, {});
   for (StudyRecord* record : {&unknown, &unanswered})
-    record->true_matches = record->correct = std::nullopt, record->precision.reset();
+    record->true_matches = record->correct = std::nullopt, record->precision = std::nullopt;
   unanswered.selected.reset();
   const SummaryRow row = first_row({unknown, unanswered, record_of("c", 4, 4, 2, 1)});
   EXPECT_EQ(row.pairs, 1);

@@ -60,7 +60,7 @@ void put_run(const Workplace& place, const std::string& run = "run", const std::
       record_of("a", "gc", 1.0),  record_of("a", "oracle", 0.5), record_of("other", "ss", 4.0)};
   const double precisions[] = {0.25, 0.75, 0, 1, 1, 1, 0.75, 1, 0.25};
   for (std::size_t i = 0; i < records.size(); ++i) records[i].selected = 4, records[i].precision = precisions[i];
-  records[2].selected = 0, records[2].precision.reset();  // empty
+  records[2].selected = 0, records[2].precision = std::nullopt;  // empty
   records[4].true_matches = 2;                            // excluded
   records[5].matches.reset();                             // failed
   records[8].level = "0.2";
