@@ -59,6 +59,8 @@ Indices connected_first(const CorrespondenceSet& matches, const TurboregOptions&
   return rows;
 }
 
+constexpr double kEdgesOfBlock = 4e6;  ///< that are counted together
+
 /// Room for the first edges and for candidates.
 std::size_t pivots_held(double rows, int pivots) {
   return static_cast<std::size_t>(std::min(2.0 * pivots, rows * (rows - 1) / 2));
@@ -88,7 +90,7 @@ class Triangles {
     const std::size_t held = pivots_held(matches_.size(), static_cast<int>(count));
     pivots_.reserve(held);
     std::vector<BitGraph::Word> found;
-    Indices others, counts_of_others;
+    std::vector<int> counts_of_block;
     int fewest = 1, end = graph_.size();  // with less an edge is not among the first; no node from `end` on has more
     const auto offer = [&](int i, int j, int shared) {
       if (shared < fewest) return;
@@ -96,29 +98,34 @@ class Triangles {
       pivots_.push_back({shared, in_order ? i : j, in_order ? j : i, difference_of_lengths(matches_, i, j)});
       if (pivots_.size() == held && held > count) fewest = keep_first(count);
     };
-    for (int i = 0; i < end; ++i) {
-      while (end > i && common_.degree(end - 1) <= fewest) --end;
-      if (common_.degree(i) <= fewest) continue;
-      const int first = i / 64, last = (end + 63) / 64;
-      if (!common_.is_faster(i, first, last, graph_.degree(i, first, last))) {
-        others.clear();
-        graph_.for_neighbors(i, [&](int j) {
-          if (j > i && common_.degree(j) > fewest) others.push_back(j);
-        });
-        counts_of_others.resize(others.size());
-        graph_.count_common(i, others, counts_of_others.data());
-        for (std::size_t k = 0; k < others.size(); ++k) offer(i, others[k], counts_of_others[k]);
-        continue;
+    for (int i = 0; i < end;) {
+      BitGraph::NodeBlock block{i / 64, std::min(i / 64 + BitGraph::kBlock, graph_.words()), 0, {}, {}};
+      block.nodes.assign(BitGraph::kBlock, 0);
+      double most_edges = 0;
+      for (; i < std::min(64 * block.last, end) && most_edges < kEdgesOfBlock; ++i) {
+        while (end > i && common_.degree(end - 1) <= fewest) --end;
+        if (common_.degree(i) <= fewest) continue;
+        const int first = i / 64, last = (end + 63) / 64;
+        if (!common_.is_faster(i, first, last, graph_.degree(i, first, last))) {
+          block.nodes[static_cast<std::size_t>(first - block.first)] |= BitGraph::Word{1} << (i & 63);
+          most_edges += common_.degree(i);
+          continue;
+        }
+        const std::vector<int>& counts = common_.count(i, first, last);
+        common_.find(fewest, found);
+        found[0] &= ~((BitGraph::Word{2} << (i & 63)) - 1);
+        for (int word = first; word < last; ++word) {
+          const BitGraph::Word edges = found[static_cast<std::size_t>(word - first)] & graph_.neighbors(i)[word];
+          BitGraph::for_bits(&edges, 1, [&](int bit) {
+            offer(i, 64 * word + bit, counts[static_cast<std::size_t>(64 * (word - first) + bit)]);
+          });
+        }
       }
-      const std::vector<int>& counts = common_.count(i, first, last);
-      common_.find(fewest, found);
-      found[0] &= ~((BitGraph::Word{2} << (i & 63)) - 1);
-      for (int word = first; word < last; ++word) {
-        const BitGraph::Word edges = found[static_cast<std::size_t>(word - first)] & graph_.neighbors(i)[word];
-        BitGraph::for_bits(&edges, 1, [&](int bit) {
-          offer(i, 64 * word + bit, counts[static_cast<std::size_t>(64 * (word - first) + bit)]);
-        });
-      }
+      block.end = end;
+      for (int j = 0; j < end; ++j) block.wanted.push_back(common_.degree(j) > fewest);
+      graph_.count_common(block, counts_of_block);
+      auto shared = counts_of_block.begin();
+      graph_.for_edges(block, [&](int a, int b) { offer(a, b, *shared++); });
     }
     if (pivots_.size() > count) keep_first(count);
     found_.reserve(kThirds * pivots_.size());
@@ -219,7 +226,7 @@ double working_memory(int matches, const TurboregOptions& options) {
   const double pivots = static_cast<double>(pivots_held(matches, options.pivots));
   // Names, sampled degrees and two lists of counts; strips of the graph while it is made, then counts of neighbours.
   return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + CommonNeighbors::memory(matches) +
-         80.0 * matches + pivots * sizeof(Pivot) + std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
+         80.0 * matches + BitGraph::memory_of_block(matches, kEdgesOfBlock + matches) + pivots * sizeof(Pivot) + std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
          PoseChoice::memory(matches, std::min(pivots, 1.0 * options.pivots) * kThirds, rule_of(options));
 }
 

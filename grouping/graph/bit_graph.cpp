@@ -48,6 +48,15 @@ HWY_FLATTEN void count_common(const BitGraph& graph, int node, const Indices& ot
         count_shared(graph.neighbors(node), graph.neighbors(others[k]), static_cast<std::size_t>(graph.words())));
 }
 
+/// Adds the common neighbours in some words for each edge of a block, whose rows are in `strip`.
+HWY_FLATTEN void add_common(const BitGraph& graph, const BitGraph::NodeBlock& block, const std::uint64_t* strip, int word,
+                            int words, int* counts) {
+  graph.for_edges(block, [&](int i, int j) {
+    const std::uint64_t* const row = strip + std::ptrdiff_t{i - 64 * block.first} * words;
+    *counts++ += static_cast<int>(count_shared(row, graph.neighbors(j) + word, static_cast<std::size_t>(words)));
+  });
+}
+
 /// Lengths from one row, in the two clouds.
 struct Lengths {
   const CorrespondenceSet& matches;
@@ -95,6 +104,7 @@ HWY_AFTER_NAMESPACE();
 namespace corral {
 
 HWY_EXPORT(count_common);
+HWY_EXPORT(add_common);
 HWY_EXPORT(compare_from);
 
 int BitGraph::degree(int node, int first, int last) const {
@@ -105,6 +115,20 @@ int BitGraph::degree(int node, int first, int last) const {
 
 void BitGraph::count_common(int node, const Indices& others, int* counts) const {
   HWY_DYNAMIC_DISPATCH(count_common)(*this, node, others, counts);
+}
+
+void BitGraph::count_common(const NodeBlock& block, std::vector<int>& counts) const {
+  std::size_t edges = 0;
+  for_edges(block, [&](int, int) { ++edges; });
+  counts.assign(edges, 0);
+  std::vector<Word> strip;
+  for (int word = 0; word < words_; word += kStrip) {
+    const int words = std::min(kStrip, words_ - word);
+    strip.clear();
+    for (int node = 64 * block.first; node < std::min(64 * block.last, nodes_); ++node)
+      strip.insert(strip.end(), neighbors(node) + word, neighbors(node) + word + words);
+    HWY_DYNAMIC_DISPATCH(add_common)(*this, block, strip.data(), word, words, counts.data());
+  }
 }
 
 namespace {

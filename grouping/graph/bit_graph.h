@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,8 +32,40 @@ class BitGraph {
   int degree(int node) const { return degree(node, 0, words_); }
   int degree(int node, int first, int last) const;  ///< in the words from `first` to before `last`
 
+  /// Some nodes of a range, and those that count as their neighbours.
+  struct NodeBlock {
+    int first, last;           ///< words: the range is from node 64 first to before 64 last
+    int end;                   ///< nodes from here on do not count
+    std::vector<Word> nodes;   ///< a bit for each node of the range
+    std::vector<char> wanted;  ///< for each node of the graph below `end`, not 0 if it counts
+  };
+  static constexpr int kBlock = 8, kStrip = 128;  ///< words of a range, and of a strip of its rows, which fits into the cache
+  /// Bytes for the counts of a block of at most so many edges.
+  static double memory_of_block(int nodes, double edges) {
+    return 4 * std::min(edges, 64.0 * kBlock * nodes) + 64.0 * kBlock * kStrip * sizeof(Word) + nodes;
+  }
+
   /// counts[k] = the number of common neighbours of `node` and others[k].
   void count_common(int node, const Indices& others, int* counts) const;
+
+  /// Calls visit(i, j) for every edge of a block: node i of the block, j behind it and below `end`, both `wanted`. In the order
+  /// of j, then i.
+  template <class Visit>
+  void for_edges(const NodeBlock& block, Visit&& visit) const {
+    for (int j = 64 * block.first + 1; j < block.end; ++j) {
+      if (block.wanted[static_cast<std::size_t>(j)] == 0) continue;
+      const int behind = std::min(block.last, (j >> 6) + 1);
+      for (int word = block.first; word < behind; ++word) {
+        Word nodes = neighbors(j)[word] & block.nodes[static_cast<std::size_t>(word - block.first)];
+        if (word == j >> 6) nodes &= (Word{1} << (j & 63)) - 1;
+        for (; nodes != 0; nodes &= nodes - 1) visit(64 * word + lowest(nodes), j);
+      }
+    }
+  }
+
+  /// counts[k] = the number of common neighbours of the ends of edge k of for_edges(). The rows of a block stay in the cache while
+  /// those of all others pass by.
+  void count_common(const NodeBlock& block, std::vector<int>& counts) const;
 
   /// Calls visit(j) for every neighbour j of the node, ascending.
   template <class Visit>

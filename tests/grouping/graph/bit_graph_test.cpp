@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "grouping/columns/compatibility.h"
 #include "tests/support/tables.h"
@@ -64,6 +66,33 @@ TEST(ConsistencyGraph, IsThatOfThePlainForm) {
         }
       }
     }
+}
+
+TEST(BitGraph, CommonNeighboursOfABlockAreThoseOfItsEdges) {
+  const CorrespondenceSet table = testing::harsh_table(1300, 0.4, 7);
+  const BitGraph graph = consistency_graph(table, 6);
+  for (const int first : {0, 5, 16}) {
+    BitGraph::NodeBlock block{first, std::min(first + BitGraph::kBlock, graph.words()), 1250, {}, {}};
+    for (int word = 0; word < BitGraph::kBlock; ++word) block.nodes.push_back(0x5555FFFF0000AAAA);
+    for (int j = 0; j < block.end; ++j) block.wanted.push_back(j % 3 != 0);
+    std::vector<int> counts;
+    graph.count_common(block, counts);
+    std::size_t edges = 0;
+    std::set<std::pair<int, int>> seen;
+    graph.for_edges(block, [&](int i, int j) {
+      Indices common(1);
+      graph.count_common(i, {j}, common.data());
+      ASSERT_EQ(counts.at(edges++), common[0]) << i << " " << j;
+      seen.emplace(i, j);
+    });
+    EXPECT_EQ(edges, counts.size());
+    std::set<std::pair<int, int>> expected;
+    for (int i = 64 * first; i < std::min(64 * block.last, graph.size()); ++i)
+      for (int j = i + 1; j < block.end; ++j)
+        if (j % 3 != 0 && graph.is_edge(i, j) && (0x5555FFFF0000AAAA >> (i % 64) & 1) != 0) expected.emplace(i, j);
+    EXPECT_EQ(seen, expected);
+    EXPECT_GT(seen.size(), 500u);
+  }
 }
 
 TEST(SampledDegrees, CountTheRowsAtEvenSteps) {
