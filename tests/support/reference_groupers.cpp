@@ -70,9 +70,12 @@ Indices first_rows(const std::vector<double>& keys, int count, bool& tied) {
 /// The part of the graph that `start` belongs to, ascending.
 Indices connected_part(const Eigen::MatrixXd& matrix, int start) {
   Indices part{start};
+  std::vector<bool> is_part(static_cast<std::size_t>(matrix.rows()), false);
+  is_part[static_cast<std::size_t>(start)] = true;
   for (std::size_t next = 0; next < part.size(); ++next)
     for (int j = 0; j < matrix.rows(); ++j)
-      if (matrix(part[next], j) > 0 && std::find(part.begin(), part.end(), j) == part.end()) part.push_back(j);
+      if (matrix(part[next], j) > 0 && !is_part[static_cast<std::size_t>(j)])
+        is_part[static_cast<std::size_t>(j)] = true, part.push_back(j);
   std::sort(part.begin(), part.end());
   return part;
 }
