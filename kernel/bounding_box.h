@@ -18,7 +18,7 @@ struct BoundingBox {
 struct Extent {
   double low, high;
 };
-/// Plain form  tests/support/reference_columns.h
+/// Plain form  tests/support/reference/columns.h
 Extent extent_of(const double* numbers, Eigen::Index count);
 
 /// For no points: a box of size zero at the origin. The points must be finite.

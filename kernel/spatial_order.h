@@ -11,7 +11,7 @@ namespace corral {
 /// finite come last.
 ///
 /// Cost      O(N log N).
-/// Plain form  tests/support/reference_spatial_order.h
+/// Plain form  tests/support/reference/spatial_order.h
 Indices spatial_order(const Points& points, const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

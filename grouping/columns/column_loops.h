@@ -9,7 +9,7 @@
 namespace corral {
 
 // Loops of groupers over columns of doubles; every machine computes the same bits. Only sources include this.
-// Plain form  tests/support/reference_groupers.h
+// Plain form  tests/support/reference/groupers.h
 
 /// ratios[i] = first[i] / second[i], NaN unless second[i] > 0.
 void divide_columns(const double* first, const double* second, std::size_t count, double* ratios);

@@ -9,7 +9,7 @@ namespace corral {
 
 // The loops behind the filters: float arithmetic on whole columns, on the vector registers of the machine. Their sums may
 // differ from target to target by what the filters allow for; nothing else may depend on them. Only sources include this.
-// Plain form  tests/support/reference_groupers.h
+// Plain form  tests/support/reference/groupers.h
 
 /// counts[i], padded: the number of rows j that are possibly consistent with row i, itself included.
 void count_consistent(const ConsistencyFilter& filter, int* counts);

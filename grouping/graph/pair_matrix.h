@@ -24,7 +24,7 @@ class PairMatrix {
   int size() const { return rows_; }
 
   /// sums = M values, each sum in one fixed order on every machine. Both padded; the padding of `values` is 0.
-  /// Plain form  tests/support/reference_game_theory.h
+  /// Plain form  tests/support/reference/game_theory.h
   void multiply(const AlignedColumn& values, AlignedColumn& sums) const;
 
   const double* from(int row) const {

@@ -7,7 +7,7 @@
 namespace corral {
 
 // Products of a matrix of bits with whole numbers. Only sources include this.
-// Plain form  tests/support/reference_groupers.h
+// Plain form  tests/support/reference/groupers.h
 
 constexpr int kBlockColumns = 8;    ///< columns of a block, a bit each
 constexpr int kBlocksTogether = 4;  ///< blocks whose sums are looked up together

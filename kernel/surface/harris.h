@@ -33,12 +33,12 @@ struct HarrisOptions {
 ///           on average (and over 2e7 in all).
 /// Departs   The determinant is taken in double, without the +0.04 - 0.04 that leaves float noise on flat ground; ties go
 ///           to the lower index (there, all of them stay).
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 Keypoints detect_harris(const Points& vertices, double resolution, const HarrisOptions& options = {},
                         const ParallelFor& parallel = one_by_one);
 
 /// The response of every vertex, V, for rho in mesh units; 0 where a vertex has no normal around it.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 Eigen::VectorXd harris_response(const Points& vertices, double radius, const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

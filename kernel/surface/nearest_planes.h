@@ -13,7 +13,7 @@ struct NearestPlanes {
 };
 
 /// Of every point of the grid. Floats list the candidates, doubles decide. Only sources include this.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 NearestPlanes fit_nearest_planes(const Points& points, const PointGrid& grid, int k, const ParallelFor& parallel);
 
 }  // namespace corral

@@ -45,7 +45,7 @@ NormalGuide normal_guide(const Mesh& mesh, const NormalOptions& options);
 /// Departs   The authors turn every normal towards the origin, which on closed models gives neighbours opposite signs; with
 ///           faces the normals follow them, on a noisy mesh its own noisy faces.
 /// Throws    InvalidInput for fewer than 3 neighbours, and as normal_guide does.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 Points estimate_normals(const Mesh& mesh, const NormalOptions& options = {}, const ParallelFor& parallel = one_by_one);
 
 struct NormalsAndResolution {

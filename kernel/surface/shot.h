@@ -44,7 +44,7 @@ struct ShotOptions {
 /// support lies; on an exact tie to the side of most of the five vertices around the median distance. y = z cross x.
 /// Source    [tombari2010shot].
 /// Returns   absent for fewer than 5 vertices, or where no finite frame exists.
-/// Plain form  tests/support/reference_shot.h
+/// Plain form  tests/support/reference/shot.h
 std::optional<LocalReferenceFrame> shot_frame(const Support& support, double radius);
 
 /// Where the votes of a support are counted, four copies of 32 volumes with room for 16 bins: neighbouring vertices fall into the
@@ -67,7 +67,7 @@ struct ShotBins {
 ///           azimuth, the vote is in sector 0: that of the other three axes, or all of it (product).
 /// Source    [tombari2010shot]; additive shares, L2 norm and order as in the library that [yang2017evaluation] ran.
 /// Departs   From that library: the cosine ends with its last bin (`pcl-bug` wraps), and double decides what float does there.
-/// Plain form  tests/support/reference_shot.h
+/// Plain form  tests/support/reference/shot.h
 std::optional<Eigen::VectorXd> shot_histogram(const Support& support, const LocalReferenceFrame& frame, double radius,
                                               ShotForm form, ShotBins& bins);
 

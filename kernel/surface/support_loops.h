@@ -9,7 +9,7 @@
 namespace corral {
 
 // The loops over the support of a point. Only sources include this.
-// Plain form  tests/support/reference_shot.h
+// Plain form  tests/support/reference/shot.h
 
 /// x, y, z, the three of the normal, and the rows, by slot; the last may be null.
 struct SlotColumns {

@@ -6,7 +6,7 @@
 
 #include "tests/benchmarks/natural_tables.h"
 #include "tests/benchmarks/plain_groupers.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 #ifdef CORRAL_WITH_PCL
 #include "tests/peers/pcl_grouping.h"
 #endif

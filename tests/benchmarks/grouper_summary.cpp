@@ -20,7 +20,7 @@
 #include "tests/benchmarks/multiply_add_peak.h"
 #include "tests/benchmarks/plain_groupers.h"
 #include "tests/benchmarks/ratio_table.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral::benchmarks {
 namespace {

@@ -23,7 +23,7 @@ void print_rates(std::FILE* to, const std::vector<GrouperTime>& times);
 /// The power of n that each grouper's times grow with: least squares of log time on log n, over all meshes.
 void print_exponents(std::FILE* to, const std::vector<GrouperTime>& times);
 
-/// Compares our selections with those of tests/support/reference_groupers wherever that ends within seconds. True if none
+/// Compares our selections with those of tests/support/reference/groupers wherever that ends within seconds. True if none
 /// differs.
 bool print_labels(std::FILE* to, const std::vector<GrouperTime>& times);
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "grouping/ransac.h"
-#include "tests/support/reference_frame_ransac.h"
-#include "tests/support/reference_groupers.h"
-#include "tests/support/reference_sc2pcr.h"
-#include "tests/support/reference_turboreg.h"
+#include "tests/support/reference/frame_ransac.h"
+#include "tests/support/reference/groupers.h"
+#include "tests/support/reference/sc2pcr.h"
+#include "tests/support/reference/turboreg.h"
 #include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/evaluation.h"
-#include "tests/support/reference_clique.h"
+#include "tests/support/reference/clique.h"
 #include "tests/support/same_result.h"
 #include "tests/support/tables.h"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "tests/support/reference_consistency_voting.h"
+#include "tests/support/reference/consistency_voting.h"
 #include "tests/support/table_changes.h"
 #include "tests/support/tables.h"
 

@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-#include "tests/support/reference_game_theory.h"
+#include "tests/support/reference/game_theory.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/evaluation.h"
-#include "tests/support/reference_mac.h"
+#include "tests/support/reference/mac.h"
 #include "tests/support/row_order.h"
 #include "tests/support/same_result.h"
 #include "tests/support/tables.h"

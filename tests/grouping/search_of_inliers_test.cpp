@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -6,7 +6,7 @@
 
 #include "grouping/columns/canonical_order.h"
 #include "kernel/evaluation.h"
-#include "tests/support/reference_tcf.h"
+#include "tests/support/reference/tcf.h"
 #include "tests/support/tables.h"
 
 namespace corral {

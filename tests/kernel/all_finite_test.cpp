@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/support/execution.h"
-#include "tests/support/reference_columns.h"
+#include "tests/support/reference/columns.h"
 
 namespace corral {
 namespace {

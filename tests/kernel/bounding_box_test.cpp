@@ -5,7 +5,7 @@
 
 #include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_columns.h"
+#include "tests/support/reference/columns.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -12,7 +12,7 @@
 #include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_spatial_order.h"
+#include "tests/support/reference/spatial_order.h"
 
 namespace corral {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tests/support/reference_clique.h"
-#include "tests/support/reference_frame_ransac.h"
-#include "tests/support/reference_mac.h"
-#include "tests/support/reference_sc2pcr.h"
-#include "tests/support/reference_turboreg.h"
+#include "tests/support/reference/clique.h"
+#include "tests/support/reference/frame_ransac.h"
+#include "tests/support/reference/mac.h"
+#include "tests/support/reference/sc2pcr.h"
+#include "tests/support/reference/turboreg.h"
 
 namespace corral::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "grouping/plugin.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral {
 namespace {

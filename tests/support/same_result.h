@@ -7,7 +7,7 @@
 
 #include "grouping/grouper.h"
 #include "tests/support/execution.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral::testing {
 

@@ -10,7 +10,7 @@ namespace corral {
 //
 // A squared distance adds up the rows in sixteen sums by row mod 16; of these the first eight and the last eight are added,
 // then lane by lane, as everywhere (lanes-inl.h).
-// Plain form  tests/support/reference_matching.h
+// Plain form  tests/support/reference/matching.h
 
 /// The two nearest of the columns that were offered, in any order, each once.
 struct TwoNearest {

@@ -34,7 +34,7 @@ struct NearestFeatures {
 /// Cost      O(D (N + M)) for the projection, 24 N M multiplications of floats; O(N M D) where all features are alike
 ///           or overflow. 90 floats per target, and 80 M floats per thread.
 /// Throws    InvalidInput for numbers that are not finite.
-/// Plain form  tests/support/reference_matching.h
+/// Plain form  tests/support/reference/matching.h
 NearestFeatures find_two_nearest(const Eigen::MatrixXd& source, const Eigen::MatrixXd& target,
                                  const ParallelFor& parallel = one_by_one);
 

@@ -18,7 +18,7 @@ struct FarGroups {
 /// this.
 ///
 /// Cost      A small share of a search for the nearest where points lie on a surface: there no cell needs a closer look.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 FarGroups far_groups(const PointGrid& grid, const AlignedColumn& squares, double limit, int most);
 
 }  // namespace corral

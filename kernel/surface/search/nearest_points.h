@@ -58,7 +58,7 @@ struct FollowedPoints;
 ///
 /// Source    the bound is that of [greenspan2001nearest], with one distance in place of sorted lists of neighbours.
 /// Cost      one comparison where the bound holds; a search visits O(log V) nodes, and few for a query beyond the limit.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 class NearestTracker {
  public:
   /// The tree must outlive this.

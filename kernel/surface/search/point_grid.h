@@ -15,7 +15,7 @@ namespace corral {
 /// Points sorted into cubic cells: the index for loops over the neighbourhood of every vertex, where a tree is several times
 /// slower. A *slot* is a position in the sorted order: by cell, then by x, y, z, then by row. Sums over
 /// neighbours run in this order, so that they do not depend on how the vertices are numbered.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 class PointGrid {
  public:
   /// Finite points; the side of a cell, positive, in their units. O(V) memory however far apart the points are.

@@ -27,7 +27,7 @@ struct PointSpacing {
 /// Source    [yang2017evaluation], and the authors' program (k = 2 nearest neighbours, averaged).
 /// Cost      O(V) time where vertices lie evenly on a surface. Any number of threads gives the same bits.
 /// Throws    InvalidInput for fewer than two distinct vertices.
-/// Plain form  tests/support/reference_surface.h
+/// Plain form  tests/support/reference/surface.h
 double point_resolution(const Points& vertices, const ParallelFor& parallel = one_by_one);
 
 /// The same with what else the distances tell. Throws what point_resolution throws.

@@ -13,7 +13,7 @@
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_fpfh.h"
+#include "tests/support/reference/fpfh.h"
 #include "tests/support/renumbering.h"
 #include "tests/support/tables.h"
 

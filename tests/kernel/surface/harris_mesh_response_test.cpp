@@ -9,7 +9,7 @@
 #include "kernel/surface/search/resolution.h"
 #include "tests/support/harris_mesh_cases.h"
 #include "tests/support/meshes.h"
-#include "tests/support/reference_harris_mesh.h"
+#include "tests/support/reference/harris_mesh.h"
 
 namespace corral {
 namespace {

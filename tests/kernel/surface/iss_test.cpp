@@ -10,7 +10,7 @@
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_iss.h"
+#include "tests/support/reference/iss.h"
 #include "tests/support/renumbering.h"
 #include "tests/support/tables.h"
 

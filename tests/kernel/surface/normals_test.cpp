@@ -6,7 +6,7 @@
 #include "kernel/error.h"
 #include "kernel/surface/mesh/perturbation.h"
 #include "tests/support/meshes.h"
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -8,7 +8,7 @@
 #include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/search/resolution.h"
 #include "tests/support/meshes.h"
-#include "tests/support/reference_shot.h"
+#include "tests/support/reference/shot.h"
 #include "tests/support/tables.h"
 
 namespace corral {

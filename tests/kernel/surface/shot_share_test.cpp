@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/support/execution.h"
-#include "tests/support/reference_shot.h"
+#include "tests/support/reference/shot.h"
 
 namespace corral {
 namespace {

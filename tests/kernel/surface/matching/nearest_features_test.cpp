@@ -13,7 +13,7 @@
 #include "kernel/random.h"
 #include "kernel/surface/matching/feature_filter.h"
 #include "tests/support/execution.h"
-#include "tests/support/reference_matching.h"
+#include "tests/support/reference/matching.h"
 
 namespace corral {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "kernel/random.h"
 #include "tests/support/meshes.h"
-#include "tests/support/reference_topology.h"
+#include "tests/support/reference/topology.h"
 #include "tests/support/tables.h"
 
 namespace corral {

@@ -11,7 +11,7 @@
 #include "kernel/surface/search/resolution.h"
 #include "tests/support/execution.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

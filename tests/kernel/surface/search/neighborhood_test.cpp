@@ -9,7 +9,7 @@
 
 #include "kernel/random.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

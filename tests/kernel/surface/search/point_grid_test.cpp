@@ -11,7 +11,7 @@
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
 #include "tests/support/point_sets.h"
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 #include "tests/support/renumbering.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -7,7 +7,7 @@
 #include "kernel/random.h"
 #include "tests/support/execution.h"
 #include "tests/support/meshes.h"
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 #include "tests/support/tables.h"
 
 namespace corral {

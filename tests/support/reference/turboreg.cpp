@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_turboreg.h"
+#include "tests/support/reference/turboreg.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "kernel/triangle_fit.h"
-#include "tests/support/reference_pose_choice.h"
+#include "tests/support/reference/pose_choice.h"
 
 namespace corral::reference {
 namespace {

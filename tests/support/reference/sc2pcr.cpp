@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_sc2pcr.h"
+#include "tests/support/reference/sc2pcr.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "kernel/weighted_fit.h"
-#include "tests/support/reference_pose_choice.h"
+#include "tests/support/reference/pose_choice.h"
 
 namespace corral::reference {
 namespace {

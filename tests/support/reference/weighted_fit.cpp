@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_weighted_fit.h"
+#include "tests/support/reference/weighted_fit.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>

@@ -6,7 +6,7 @@
 
 #include "grouping/pose/pose_score.h"
 #include "kernel/rigid_transform.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 /// What groupers share that choose among poses, once more. The fits are those of kernel/, so that poses of equal worth up to
 /// rounding are settled alike.

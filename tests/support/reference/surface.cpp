@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_tcf.h"
+#include "tests/support/reference/tcf.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>

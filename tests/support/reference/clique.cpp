@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_clique.h"
+#include "tests/support/reference/clique.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
-#include "tests/support/reference_weighted_fit.h"
+#include "tests/support/reference/weighted_fit.h"
 
 namespace corral::reference {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_mac.h"
+#include "tests/support/reference/mac.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "kernel/elementary.h"
 #include "kernel/weighted_fit.h"
-#include "tests/support/reference_pose_choice.h"
+#include "tests/support/reference/pose_choice.h"
 
 namespace corral::reference {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_harris_mesh.h"
+#include "tests/support/reference/harris_mesh.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "kernel/random.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral::reference {
 namespace {

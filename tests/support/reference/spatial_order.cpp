@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_spatial_order.h"
+#include "tests/support/reference/spatial_order.h"
 
 namespace corral::testing {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_iss.h"
+#include "tests/support/reference/iss.h"
 
 #include <Eigen/SVD>
 #include <cmath>

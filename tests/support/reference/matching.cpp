@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_matching.h"
+#include "tests/support/reference/matching.h"
 
 #include <limits>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_shot.h"
+#include "tests/support/reference/shot.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/reference_surface.h"
+#include "tests/support/reference/surface.h"
 
 namespace corral::testing {
 namespace {

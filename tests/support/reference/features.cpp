@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral::reference {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_fpfh.h"
+#include "tests/support/reference/fpfh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_consistency_voting.h"
+#include "tests/support/reference/consistency_voting.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_topology.h"
+#include "tests/support/reference/topology.h"
 
 // With OpenMesh 9, g++ 12 at -O3 gives false warnings of uninitialised values.
 #ifndef __clang__

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "grouping/tcf.h"
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 namespace corral::reference {
 

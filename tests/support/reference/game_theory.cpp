@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_game_theory.h"
+#include "tests/support/reference/game_theory.h"
 
 #include <Eigen/Core>
 #include <algorithm>

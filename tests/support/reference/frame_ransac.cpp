@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_frame_ransac.h"
+#include "tests/support/reference/frame_ransac.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <set>
 
-#include "tests/support/reference_pose_choice.h"
+#include "tests/support/reference/pose_choice.h"
 
 namespace corral::reference {
 namespace {

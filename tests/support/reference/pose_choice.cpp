@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_pose_choice.h"
+#include "tests/support/reference/pose_choice.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/reference_groupers.h"
+#include "tests/support/reference/groupers.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
