@@ -21,17 +21,17 @@ typedef struct corral_table {
   double resolution;                      ///< mesh units per pr
   const double* feature_distance;         ///< to the nearest target feature; null: absent
   const double* second_feature_distance;  ///< to the second nearest, 0: there is none; null: absent
-  const double* source_frames;            ///< 9 each, row by row, whose rows are the unit axes; zeros: no frame; null: absent
-  const double* target_frames;            ///< the same of the target points
-  double source_centroid[3];              ///< mean of all source vertices, mesh units
+  const double* source_frames;  ///< 9 each, row by row, whose rows are the unit axes; zeros: no frame; null: absent
+  const double* target_frames;  ///< the same of the target points
+  double source_centroid[3];    ///< mean of all source vertices, mesh units
 } corral_table;
 
 /// The answer. Its memory belongs to Corral; everything is zero before the call.
 typedef struct corral_answer {
-  unsigned char* selected; ///< one for each row: not zero if the match is kept
-  double* scores;          ///< one for each row, larger is better; they count if has_scores is not zero
+  unsigned char* selected;  ///< one for each row: not zero if the match is kept
+  double* scores;           ///< one for each row, larger is better; they count if has_scores is not zero
   int has_scores;
-  double pose[16]; ///< 4 x 4, row by row, target from source, mesh units; it counts if has_pose is not zero
+  double pose[16];  ///< 4 x 4, row by row, target from source, mesh units; it counts if has_pose is not zero
   int has_pose;
 } corral_answer;
 

@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "grouping/grouper.h"
 #include "grouping/columns/otsu.h"
+#include "grouping/grouper.h"
 #include "kernel/options.h"
 
 namespace corral {

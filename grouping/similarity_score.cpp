@@ -13,6 +13,8 @@ GroupingResult group_by_similarity_score(const CorrespondenceSet& matches, const
   return result;
 }
 
-double working_memory(int matches, const SimilarityScoreOptions& options) { return 8.0 * matches + otsu_memory(matches, options.otsu); }
+double working_memory(int matches, const SimilarityScoreOptions& options) {
+  return 8.0 * matches + otsu_memory(matches, options.otsu);
+}
 
 }  // namespace corral

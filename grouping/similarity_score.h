@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "grouping/grouper.h"
 #include "grouping/columns/otsu.h"
+#include "grouping/grouper.h"
 #include "kernel/options.h"
 
 namespace corral {

@@ -226,7 +226,8 @@ double working_memory(int matches, const TurboregOptions& options) {
   const double pivots = static_cast<double>(pivots_held(matches, options.pivots));
   // Names, sampled degrees and two lists of counts; strips of the graph while it is made, then counts of neighbours.
   return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + CommonNeighbors::memory(matches) +
-         80.0 * matches + BitGraph::memory_of_block(matches, kEdgesOfBlock + matches) + pivots * sizeof(Pivot) + std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
+         80.0 * matches + BitGraph::memory_of_block(matches, kEdgesOfBlock + matches) + pivots * sizeof(Pivot) +
+         std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
          PoseChoice::memory(matches, std::min(pivots, 1.0 * options.pivots) * kThirds, rule_of(options));
 }
 

@@ -11,7 +11,7 @@ struct RigidDescent {
   double cost = 0;         ///< at the pose; never above that of the start
   bool is_usable = false;  ///< the cost is finite, and the pairs with remaining weight determine a pose
   bool converged = false;
-  int iterations = 0;      ///< of the Levenberg-Marquardt method, over all descents
+  int iterations = 0;  ///< of the Levenberg-Marquardt method, over all descents
 };
 
 /// Minimises the cost over the rigid motions with Ceres, one thread. A loss whose weights tend to zero (tukey,

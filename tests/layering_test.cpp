@@ -31,9 +31,9 @@ const Names kSurfaceLibraries = {"Eigen", "hwy", "CGAL", "OpenMesh", "flann", "b
 const Names kAppLibraries = {"Eigen", "CLI", "nlohmann", "oneapi", "boost"};
 
 /// The rooms of apps/ from the lowest to the highest: none includes one above it.
-const std::vector<std::string> kAppFloors = {"apps/runtime", "apps/picture", "apps/pair",  "apps/align",
-                                             "apps/dataset", "apps/results", "apps/advise", "apps/study", "apps/claims",
-                                             "apps/reproduce", "apps/report",  "apps/scoreboard",  "apps/commands"};
+const std::vector<std::string> kAppFloors = {
+    "apps/runtime", "apps/picture", "apps/pair",      "apps/align",  "apps/dataset",    "apps/results", "apps/advise",
+    "apps/study",   "apps/claims",  "apps/reproduce", "apps/report", "apps/scoreboard", "apps/commands"};
 
 /// Rooms by folder, or by file; the longest that fits a file is its room.
 std::map<std::string, Room> make_rooms() {
@@ -210,7 +210,8 @@ TEST(Layering, TestsLieWhereTheirFilesLie) {
     const std::string stem = path.stem().string();
     if (path.begin()->string() != "tests" || stem.size() < 6 || stem.substr(stem.size() - 5) != "_test") continue;
     const std::string room = path.parent_path().lexically_relative("tests").generic_string();
-    if (Names{".", "io", "grouping/memory", "apps/report/page", "apps/scoreboard/site", "fuzz"}.count(room)) continue;  // tests of the whole
+    if (Names{".", "io", "grouping/memory", "apps/report/page", "apps/scoreboard/site", "fuzz"}.count(room))
+      continue;  // tests of the whole
     EXPECT_TRUE(kRooms.count(room)) << file << " mirrors no room";
   }
 }

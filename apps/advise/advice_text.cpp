@@ -18,7 +18,8 @@ std::string facts_text(const Advice& advice) {
   const DataFacts& facts = advice.facts;
   std::string text = std::to_string(facts.sampled) + " of " + std::to_string(facts.pairs) + " pairs tried, " +
                      std::to_string(facts.judged) + " judged " +
-                     (advice.by_truth ? "by their truths" : "by poses of 'register' that are sure without a truth") + "\n";
+                     (advice.by_truth ? "by their truths" : "by poses of 'register' that are sure without a truth") +
+                     "\n";
   const auto add = [&](const char* what, const std::string& value) {
     if (!value.empty()) text += "  " + std::string(what) + value + "\n";
   };
@@ -32,8 +33,8 @@ std::string facts_text(const Advice& advice) {
 }
 
 std::string share_text(const MethodOutcome& method) {
-  return std::to_string(method.registered) + " of " + std::to_string(method.pairs) + " pairs (95 %: " +
-         fixed(method.low, 2) + " to " + fixed(method.high, 2) + ")";
+  return std::to_string(method.registered) + " of " + std::to_string(method.pairs) +
+         " pairs (95 %: " + fixed(method.low, 2) + " to " + fixed(method.high, 2) + ")";
 }
 
 std::string table_of(const Advice& advice) {
@@ -96,7 +97,8 @@ std::string advice_text(const Advice& advice, const AdviceOptions& options) {
           " ms on the median pair\n";
   constexpr int kFew = 5;
   if (first.pairs < kFew)
-    text += "that is little to go by: " + std::to_string(first.pairs) + (first.pairs == 1 ? " pair" : " pairs") + " could be judged\n";
+    text += "that is little to go by: " + std::to_string(first.pairs) + (first.pairs == 1 ? " pair" : " pairs") +
+            " could be judged\n";
   const std::vector<std::string> ties = advice.ties();
   if (!ties.empty()) {
     text += "not distinguishable from it on these pairs:";

@@ -45,8 +45,9 @@ void judge_by_registration(LoadedPair& pair) {
   const MethodRecord record = evaluate_on(pair, kRegister);
   if (!record.confidence || *record.confidence < kTrusted) return;
   const RigidTransform& pose = *record.pose.target_from_source;
-  pair.truth = pair.meshes ? pair_truth(pair.meshes->source, pair.meshes->target, pose, pair.matches.resolution, kThresholdPr)
-                           : table_truth(pair.matches, pose, kThresholdPr);
+  pair.truth = pair.meshes
+                   ? pair_truth(pair.meshes->source, pair.meshes->target, pose, pair.matches.resolution, kThresholdPr)
+                   : table_truth(pair.matches, pose, kThresholdPr);
 }
 
 int correct_of(const LoadedPair& pair) {
@@ -182,12 +183,13 @@ class Adviser {
     advice_.perfect = perfect_.outcome("oracle", options_.budget_ms);
     for (std::size_t i = 0; i < names_.size(); ++i)
       advice_.methods.push_back(sums_[i].outcome(names_[i], options_.budget_ms));
-    std::stable_sort(advice_.methods.begin(), advice_.methods.end(), [&](const MethodOutcome& a, const MethodOutcome& b) {
-      if (a.is_affordable != b.is_affordable) return a.is_affordable;
-      if (preferred(a) != preferred(b)) return preferred(a) > preferred(b);
-      const double never = std::numeric_limits<double>::infinity();
-      return a.median_ms.value_or(never) < b.median_ms.value_or(never);
-    });
+    std::stable_sort(advice_.methods.begin(), advice_.methods.end(),
+                     [&](const MethodOutcome& a, const MethodOutcome& b) {
+                       if (a.is_affordable != b.is_affordable) return a.is_affordable;
+                       if (preferred(a) != preferred(b)) return preferred(a) > preferred(b);
+                       const double never = std::numeric_limits<double>::infinity();
+                       return a.median_ms.value_or(never) < b.median_ms.value_or(never);
+                     });
   }
 
   void try_other_matchings() {

@@ -34,7 +34,7 @@ struct SampleRange {
 /// What the sampled pairs are like; what needs surfaces or a truth is absent without.
 struct DataFacts {
   int pairs = 0, sampled = 0;
-  int judged = 0;               ///< with a truth, or a pose that is sure without one
+  int judged = 0;                     ///< with a truth, or a pose that is sure without one
   std::vector<std::string> failures;  ///< pairs that could not be read or matched, with the reason
   std::optional<SampleRange> points, resolution, matches, correct_percent, overlap_percent, frames_percent;
 };
@@ -42,8 +42,8 @@ struct DataFacts {
 /// How a method did on the judged pairs.
 struct MethodOutcome {
   std::string method;
-  int registered = 0, pairs = 0;  ///< pairs: judged
-  double success = 0, low = 0, high = 0;  ///< share registered, Wilson interval of 95 %
+  int registered = 0, pairs = 0;            ///< pairs: judged
+  double success = 0, low = 0, high = 0;    ///< share registered, Wilson interval of 95 %
   std::optional<double> precision, recall;  ///< means over the pairs
   std::optional<double> median_ms;          ///< over all sampled pairs; absent if it answered on none
   bool is_affordable = true;                ///< answered, within the budget
@@ -53,8 +53,8 @@ struct MethodOutcome {
 struct OtherMatching {
   std::string name;  ///< "keypoints at half the spacing"
   int pairs = 0;
-  double correct_ratio = 0;         ///< of the sums of correct matches, to those of the matching as it is
-  int registered = 0, before = 0;   ///< pairs that the chosen method registers, so and as it is
+  double correct_ratio = 0;        ///< of the sums of correct matches, to those of the matching as it is
+  int registered = 0, before = 0;  ///< pairs that the chosen method registers, so and as it is
 };
 
 struct Advice {

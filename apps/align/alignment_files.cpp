@@ -106,14 +106,16 @@ std::vector<FileContent> alignment_files(const std::string& folder, const std::v
 }
 
 std::string alignment_text(const std::vector<std::string>& names, const AlignedViews& aligned) {
-  TextTable table({"source", "target", "overlap %", "median pr", "in front %", "off pr", "loops", "closed", "confidence", "verdict"});
+  TextTable table({"source", "target", "overlap %", "median pr", "in front %", "off pr", "loops", "closed",
+                   "confidence", "verdict"});
   std::string doubtful;
   for (const AlignedPair& pair : aligned.pairs) {
     const std::string &source = name_of(names, pair.pose.a), &target = name_of(names, pair.pose.b),
                       verdict = to_text(pair.judgement.verdict);
     table.add({source, target, fixed(100 * pair.agreement.overlap, 1), fixed(pair.agreement.median_pr, 2),
                fixed(100 * pair.agreement.in_front, 2), fixed(pair.judgement.error_pr, 2),
-               std::to_string(pair.judgement.loops), std::to_string(pair.judgement.closed_loops), fixed(pair.confidence, 3), verdict});
+               std::to_string(pair.judgement.loops), std::to_string(pair.judgement.closed_loops),
+               fixed(pair.confidence, 3), verdict});
     if (is_doubtful(pair)) doubtful += "doubtful: " + source + " -> " + target + ", " + verdict + "\n";
   }
   std::string text = aligned.pairs.empty() ? "no pair of views agrees\n" : table.str();

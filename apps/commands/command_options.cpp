@@ -265,9 +265,10 @@ void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins) {
 
 void add_external_options(CLI::App& command, ExternalSettings& settings) {
   command
-      .add_option("--external", settings.methods,
-                  "Another program as a further grouper: NAME='python3 mine.py {matches} {group}'. It reads the table of "
-                  "matches and writes the rows that it keeps, or a pose to {pose}, or both (apps/README.md)")
+      .add_option(
+          "--external", settings.methods,
+          "Another program as a further grouper: NAME='python3 mine.py {matches} {group}'. It reads the table of "
+          "matches and writes the rows that it keeps, or a pose to {pose}, or both (apps/README.md)")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
   add_plugin_option(command, settings.plugins);
@@ -296,7 +297,8 @@ std::vector<ExternalMethod> external_methods(const ExternalSettings& settings) {
       methods.back().timeout_s = settings.timeout_s;
       methods.back().memory_bytes = static_cast<std::uint64_t>(half_of_memory());
       for (std::size_t i = 0; i + 1 < methods.size(); ++i)
-        if (methods[i].name == methods.back().name) throw UsageError("--external: " + methods[i].name + " occurs twice");
+        if (methods[i].name == methods.back().name)
+          throw UsageError("--external: " + methods[i].name + " occurs twice");
     } catch (const InvalidInput& error) {
       throw UsageError(error.what());
     }

@@ -53,7 +53,8 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   if (type.find('|') == std::string::npos) return words;
   std::istringstream stream(type);
   for (std::string word; std::getline(stream, word, '|');)
-    if (!word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '-'; }) &&
+    if (!word.empty() &&
+        std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '-'; }) &&
         std::islower(static_cast<unsigned char>(word[0])))
       words.push_back(word);
   return words;
@@ -110,14 +111,17 @@ std::string entry(const std::string& bold, const std::string& value, const CLI::
 
 std::string page_of(const CLI::App& app, const std::string& version) {
   std::string title = path_of(app, "-");
-  std::transform(title.begin(), title.end(), title.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::transform(title.begin(), title.end(), title.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   const auto [text, examples] = split_footer(app.get_footer());
   std::string page = ".TH \"" + title + "\" 1 \"\" \"corral " + version + "\" \"Corral\"\n.ad l\n.SH NAME\n" +
-                     roff(path_of(app, "-")) + " \\- " + roff(app.get_description()) + "\n.SH SYNOPSIS\n" + synopsis(app);
+                     roff(path_of(app, "-")) + " \\- " + roff(app.get_description()) + "\n.SH SYNOPSIS\n" +
+                     synopsis(app);
   if (!text.empty()) page += ".SH DESCRIPTION\n" + roff(text) + "\n";
   if (!operands_of(app).empty()) {
     page += ".SH ARGUMENTS\n";
-    for (const CLI::Option* operand : operands_of(app)) page += entry(operand->get_single_name(), value_of(*operand), *operand);
+    for (const CLI::Option* operand : operands_of(app))
+      page += entry(operand->get_single_name(), value_of(*operand), *operand);
   }
   if (!options_of(app).empty()) {
     page += ".SH OPTIONS\n";
@@ -169,7 +173,8 @@ std::string bash_completion(const CLI::App& app) {
       const std::vector<std::string> choices = choices_of(*option);
       if (choices.empty()) continue;
       for (const std::string& name : spellings(*option))
-        values += "    '" + path + " " + name + "') COMPREPLY=($(compgen -W '" + joined(choices) + "' -- \"$now\")); return ;;\n";
+        values += "    '" + path + " " + name + "') COMPREPLY=($(compgen -W '" + joined(choices) +
+                  "' -- \"$now\")); return ;;\n";
     }
   }
   return "# bash completion of corral\n"
@@ -178,8 +183,12 @@ std::string bash_completion(const CLI::App& app) {
          "  for word in \"${COMP_WORDS[@]:1:COMP_CWORD-1}\"; do\n"
          "    case \" $(_corral_commands \"$path\") \" in *\" $word \"*) path=\"$path $word\" ;; esac\n"
          "  done\n"
-         "  case \"$path $before\" in\n" + values + "  esac\n"
-         "  case $path in\n" + words + "  esac\n"
+         "  case \"$path $before\" in\n" +
+         values +
+         "  esac\n"
+         "  case $path in\n" +
+         words +
+         "  esac\n"
          "  case $now in\n"
          "    -*) COMPREPLY=($(compgen -W \"$words\" -- \"$now\")) ;;\n"
          "    *) COMPREPLY=($(compgen -W \"$(_corral_commands \"$path\")\" -- \"$now\") $(compgen -f -- \"$now\")) ;;\n"
@@ -234,8 +243,9 @@ std::string fish_completion(const CLI::App& app) {
 }
 
 std::string zsh_completion(const CLI::App& app) {
-  std::string text = "#compdef corral\n# zsh completion of corral\n_corral() {\n  local path=corral word\n"
-                     "  for word in \"${words[@]:1:$((CURRENT-2))}\"; do\n    case \"$path $word\" in\n";
+  std::string text =
+      "#compdef corral\n# zsh completion of corral\n_corral() {\n  local path=corral word\n"
+      "  for word in \"${words[@]:1:$((CURRENT-2))}\"; do\n    case \"$path $word\" in\n";
   std::string cases;
   for (const CLI::App* each : all_apps(app)) {
     const std::string path = path_of(*each, " ");
@@ -259,9 +269,11 @@ std::string zsh_completion(const CLI::App& app) {
 }  // namespace
 
 void add_manual(CLI::App& app, Action& action) {
-  auto* command = app.add_subcommand("manual", "The pages of the manual and the completions of bash, zsh and fish, as files");
+  auto* command =
+      app.add_subcommand("manual", "The pages of the manual and the completions of bash, zsh and fish, as files");
   auto folder = std::make_shared<std::string>();
-  command->add_option("-o,--output", *folder, "Folder for man/, bash-completion/, zsh/ and fish/, such as ~/.local/share")
+  command
+      ->add_option("-o,--output", *folder, "Folder for man/, bash-completion/, zsh/ and fish/, such as ~/.local/share")
       ->type_name("FOLDER")
       ->required();
   command->footer("Example:\n  corral manual -o ~/.local/share");

@@ -67,7 +67,8 @@ class Drawing {
       const double residual = (truth_.rotation * source + truth_.translation - target).norm();
       if ((residual <= options_.threshold_pr * real_.resolution) == is_correct) return row;
     }
-    throw InvalidInput("challenge", "noise_pr", options_.noise_pr, "a deviation that leaves correct matches within the threshold");
+    throw InvalidInput("challenge", "noise_pr", options_.noise_pr,
+                       "a deviation that leaves correct matches within the threshold");
   }
 
   DrawnRow beside_correct() {

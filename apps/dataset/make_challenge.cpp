@@ -24,7 +24,9 @@ std::vector<PlannedTable> plan_tables(const MakeChallengeOptions& options, const
   std::vector<PlannedTable> tables;
   for (const DatasetPair& pair : real.pairs) {
     if (pair.matches.empty() || pair.truth.empty())
-      throw IoError(real.path("pairs.csv"), "pair " + pair.name, "has no table of matches with a truth to draw from; 'corral dataset make tables' makes them from surfaces");
+      throw IoError(
+          real.path("pairs.csv"), "pair " + pair.name,
+          "has no table of matches with a truth to draw from; 'corral dataset make tables' makes them from surfaces");
     for (const int size : options.sizes)
       for (const double ratio : options.inlier_ratios)
         for (const double noise : options.noises_pr)

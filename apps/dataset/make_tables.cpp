@@ -49,14 +49,16 @@ void make_tables(const MakeTablesOptions& options, Progress& progress) {
     DatasetPair pair{given.name, "", "", "", given.attributes, "matches/" + given.name + ".csv"};
     DatasetPair without_truth = given;
     without_truth.truth.clear(), without_truth.equal_truths.clear();
-    if (!folder.has(pair.matches)) folder.put(pair.matches, matches_text(load_pair(set, without_truth, matching).matches));
+    if (!folder.has(pair.matches))
+      folder.put(pair.matches, matches_text(load_pair(set, without_truth, matching).matches));
     const auto put_truth = [&](const std::string& truth, const std::string& file) {
       if (!folder.has(file)) folder.put(file, transform_text(read_transform(set.path(truth))));
       return file;
     };
     if (!given.truth.empty()) pair.truth = put_truth(given.truth, "truth/" + given.name + ".txt");
     for (std::size_t k = 0; k < given.equal_truths.size(); ++k)
-      pair.equal_truths.push_back(put_truth(given.equal_truths[k], "truth/" + given.name + "-" + std::to_string(k + 1) + ".txt"));
+      pair.equal_truths.push_back(
+          put_truth(given.equal_truths[k], "truth/" + given.name + "-" + std::to_string(k + 1) + ".txt"));
     made.pairs[static_cast<std::size_t>(i)] = std::move(pair);
   });
   folder.finish(made);

@@ -36,7 +36,8 @@ double logit(const ConfidenceModel& model, const ConfidenceSignals& signals) {
 }
 
 int right_in(const std::vector<JudgedPose>& poses) {
-  return static_cast<int>(std::count_if(poses.begin(), poses.end(), [](const JudgedPose& pose) { return pose.is_right; }));
+  return static_cast<int>(
+      std::count_if(poses.begin(), poses.end(), [](const JudgedPose& pose) { return pose.is_right; }));
 }
 
 std::set<std::string> groups_of(const std::vector<JudgedPose>& poses) {
@@ -151,10 +152,10 @@ std::string list(const ConfidenceSignals& values) {
 
 std::string table_text(const std::string& name, const ConfidenceModel& model) {
   return "\n[" + name + "]\npairs = " + std::to_string(model.pairs) + "\ngroups = " + std::to_string(model.groups) +
-         "\nright = " + std::to_string(model.right) + "\nmean = " + list(model.mean) + "\ndeviation = " +
-         list(model.deviation) + "\nlow = " + list(model.low) + "\nhigh = " + list(model.high) + "\nweight = " +
-         list(model.weight) + "\nbias = " + to_text(model.bias) + "\nslope = " + to_text(model.slope) + "\nshift = " +
-         to_text(model.shift) + "\n";
+         "\nright = " + std::to_string(model.right) + "\nmean = " + list(model.mean) +
+         "\ndeviation = " + list(model.deviation) + "\nlow = " + list(model.low) + "\nhigh = " + list(model.high) +
+         "\nweight = " + list(model.weight) + "\nbias = " + to_text(model.bias) + "\nslope = " + to_text(model.slope) +
+         "\nshift = " + to_text(model.shift) + "\n";
 }
 
 ConfidenceModel read_model(const TomlTable& root, const std::string& name) {

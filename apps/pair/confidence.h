@@ -57,10 +57,11 @@ std::vector<double> held_out_probabilities(const std::vector<JudgedPose>& poses)
 /// How good probabilities are.
 struct Reliability {
   int pairs = 0, right = 0;
-  double brier = 0;                ///< mean of (p - y)^2
-  double area = 0;                 ///< under the ROC curve; 0.5 where all are right, or wrong
-  double calibration_error = 0;    ///< over bins of equal counts, ten at most with 20 pairs at least: sum n_b / n |mean y - mean p|
-  int kept = 0, kept_right = 0;    ///< poses with p >= 0.9
+  double brier = 0;  ///< mean of (p - y)^2
+  double area = 0;   ///< under the ROC curve; 0.5 where all are right, or wrong
+  double calibration_error =
+      0;  ///< over bins of equal counts, ten at most with 20 pairs at least: sum n_b / n |mean y - mean p|
+  int kept = 0, kept_right = 0;  ///< poses with p >= 0.9
 };
 Reliability reliability(const std::vector<double>& probabilities, const std::vector<JudgedPose>& poses);
 

@@ -11,9 +11,15 @@ namespace corral {
 
 /// What tells a right pose from a wrong one without a truth; all finite, larger is safer.
 constexpr std::size_t kSignals = 9;
-constexpr std::array<const char*, kSignals> kSignalNames = {
-    "support", "support share", "lead over other poses", "certainty of the fit", "agreement of groupers",
-    "overlap", "residual",      "free space",            "stability"};
+constexpr std::array<const char*, kSignals> kSignalNames = {"support",
+                                                            "support share",
+                                                            "lead over other poses",
+                                                            "certainty of the fit",
+                                                            "agreement of groupers",
+                                                            "overlap",
+                                                            "residual",
+                                                            "free space",
+                                                            "stability"};
 using ConfidenceSignals = std::array<double, kSignals>;
 
 /// Residual up to which a match agrees with a pose, pr.

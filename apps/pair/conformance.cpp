@@ -28,8 +28,7 @@ SyntheticProblem problem(int matches, double share, std::uint64_t seed) {
 std::string form_problem(const GroupingResult& found, int matches) {
   for (std::size_t i = 0; i < found.selected.size(); ++i) {
     const int row = found.selected[i];
-    if (row < 0 || row >= matches)
-      return "selects row " + std::to_string(row) + " of " + std::to_string(matches);
+    if (row < 0 || row >= matches) return "selects row " + std::to_string(row) + " of " + std::to_string(matches);
     if (i > 0 && row <= found.selected[i - 1]) return "its rows are not ascending, each once";
   }
   if (!found.scores.empty() && found.scores.size() != static_cast<std::size_t>(matches))
@@ -138,7 +137,8 @@ class Contract {
         std::sort(after.begin(), after.end());
         const std::size_t differ = difference(before, after);
         if (static_cast<double>(differ) > share * table.size())
-          wrong = std::to_string(differ) + " of " + std::to_string(table.size()) + " matches are selected in one of the two answers only";
+          wrong = std::to_string(differ) + " of " + std::to_string(table.size()) +
+                  " matches are selected in one of the two answers only";
       } catch (const std::exception& error) {
         wrong = error.what();
       }

@@ -11,10 +11,10 @@ namespace corral {
 
 /// What is asked of a grouper, and what it did.
 struct ConformanceCheck {
-  std::string name;                               ///< "empty table"
-  std::optional<bool> holds;                      ///< absent where there is no right or wrong
-  std::string text;                               ///< what it breaks, or what was measured
-  std::optional<CorrespondenceSet> table = {};    ///< where it breaks it
+  std::string name;                             ///< "empty table"
+  std::optional<bool> holds;                    ///< absent where there is no right or wrong
+  std::string text;                             ///< what it breaks, or what was measured
+  std::optional<CorrespondenceSet> table = {};  ///< where it breaks it
 };
 
 /// The contract of every grouper, on made tables: it answers without matches and with 1 to 3; its rows are rows of the table,

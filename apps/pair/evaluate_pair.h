@@ -76,8 +76,8 @@ struct MethodRecord {
   GroupingResult found;
   std::optional<double> time_ms;         ///< median of the timed calls, the grouping alone
   std::optional<double> stated_time_ms;  ///< what another program says that it took
-  std::optional<double> confidence;      ///< probability that the refined pose registers the pair, where it was asked for
-  std::optional<GroupingScore> score;    ///< with a truth
+  std::optional<double> confidence;    ///< probability that the refined pose registers the pair, where it was asked for
+  std::optional<GroupingScore> score;  ///< with a truth
   RefinedPose pose;
   std::optional<PoseErrors> initial_errors;   ///< of the least-squares fit to the selection, with a truth
   std::optional<PoseErrors> errors;           ///< of the refined pose, with a truth

@@ -88,7 +88,8 @@ std::string group_file(const std::string& named) {
 /// Whether a program that ended well wrote nothing into its answer, or an array of nothing: it selects nothing.
 bool is_empty(const std::string& file) {
   const std::string content = read_file(file);
-  return content.empty() || (file.size() > 4 && file.substr(file.size() - 4) == ".npy" && parse_npy(file, content).rows.size() == 0);
+  return content.empty() ||
+         (file.size() > 4 && file.substr(file.size() - 4) == ".npy" && parse_npy(file, content).rows.size() == 0);
 }
 
 }  // namespace
@@ -110,7 +111,8 @@ std::vector<std::string> ExternalMethod::files() const {
 bool is_method_name(const std::string& name) {
   const auto is_odd = [](unsigned char letter) {
     const bool is_letter = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z');
-    return !is_letter && !(letter >= '0' && letter <= '9') && std::string("._+-").find(static_cast<char>(letter)) == std::string::npos;
+    return !is_letter && !(letter >= '0' && letter <= '9') &&
+           std::string("._+-").find(static_cast<char>(letter)) == std::string::npos;
   };
   return !name.empty() && name[0] != '.' && std::none_of(name.begin(), name.end(), is_odd) &&
          !look_up(methods(), name) && name != "oracle" && name != "baseline";

@@ -47,7 +47,8 @@ std::string whole_path(const std::string& file) { return std::filesystem::absolu
 template <class Function>
 Function function_of(void* library, const std::string& file, const char* name) {
   void* found = dlsym(library, name);
-  if (!found) throw IoError(file, "", std::string("has no function ") + name + ", expected a plug-in (grouping/plugin.h)");
+  if (!found)
+    throw IoError(file, "", std::string("has no function ") + name + ", expected a plug-in (grouping/plugin.h)");
   return reinterpret_cast<Function>(found);
 }
 
@@ -59,7 +60,8 @@ std::vector<OptionValue> options_of(const std::string& file, const std::string& 
     if (line.empty()) continue;
     const std::size_t equals = line.find('='), end = std::min(line.find(' '), line.size());
     if (equals == std::string::npos || equals == 0 || equals + 1 >= end)
-      throw IoError(file, "option " + std::to_string(options.size() + 1), "is '" + line + "', expected NAME=VALUE MEANING");
+      throw IoError(file, "option " + std::to_string(options.size() + 1),
+                    "is '" + line + "', expected NAME=VALUE MEANING");
     options.push_back({line.substr(0, equals), "", line.substr(equals + 1, end - equals - 1), "", "as the plug-in says",
                        end < line.size() ? line.substr(end + 1) : ""});
   }
@@ -156,22 +158,27 @@ void load_plugin(const std::string& given) {
   if (is_loaded_plugin(given)) return;
   const std::string file = whole_path(given);
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw IoError(given, "", "is not a file, expected a shared library");
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw IoError(given, "", "is not a file, expected a shared library");
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);  // never closed: its functions are in use until the end
   if (!library) throw IoError(given, "", std::string("cannot be loaded: ") + dlerror());
   const int version = function_of<decltype(&corral_plugin_version)>(library, given, "corral_plugin_version")();
   if (version != CORRAL_PLUGIN_VERSION)
-    throw IoError(given, "", "is a plug-in of version " + std::to_string(version) + ", expected version " +
-                                 std::to_string(CORRAL_PLUGIN_VERSION));
+    throw IoError(given, "",
+                  "is a plug-in of version " + std::to_string(version) + ", expected version " +
+                      std::to_string(CORRAL_PLUGIN_VERSION));
   const std::string name = function_of<decltype(&corral_plugin_name)>(library, given, "corral_plugin_name")();
   if (!is_method_name(name))
-    throw IoError(given, "", "is named " + corral::quoted(name) +
-                                 ", expected letters, digits and . _ + - only, and no name of another method");
+    throw IoError(given, "",
+                  "is named " + corral::quoted(name) +
+                      ", expected letters, digits and . _ + - only, and no name of another method");
   Plugin plugin{file, {}, function_of<decltype(&corral_plugin_group)>(library, given, "corral_plugin_group")};
-  plugin.options = options_of(given, function_of<decltype(&corral_plugin_options)>(library, given, "corral_plugin_options")());
+  plugin.options =
+      options_of(given, function_of<decltype(&corral_plugin_options)>(library, given, "corral_plugin_options")());
   Methods& all = all_methods();
-  all.table.push_back({name, name, "plug-in " + given, "", plugin.options,
-                       [name, plugin](const OptionOverrides& overrides) { return configure(name, plugin, overrides); }});
+  all.table.push_back(
+      {name, name, "plug-in " + given, "", plugin.options,
+       [name, plugin](const OptionOverrides& overrides) { return configure(name, plugin, overrides); }});
   all.of_plugins.push_back(name);
   all.files[name] = file;
 }

@@ -95,21 +95,28 @@ Grouper portfolio_entry() {
     const auto group = [options](const CorrespondenceSet& matches) { return group_by_portfolio(matches, options); };
     return ConfiguredGrouper{group, describe_options(options), proposers_memory};
   };
-  return {"auto", "Portfolio (auto)", "cheap groupers first, until a pose is probable enough", "",
-          describe_options(PortfolioOptions{}), configure};
+  return {"auto",
+          "Portfolio (auto)",
+          "cheap groupers first, until a pose is probable enough",
+          "",
+          describe_options(PortfolioOptions{}),
+          configure};
 }
 
 Grouper registration_entry() {
   const auto configure = [](const OptionOverrides& overrides) {
-    if (!overrides.empty())
-      detail::reject_unknown_option(kRegister, overrides.begin()->first, {});
+    if (!overrides.empty()) detail::reject_unknown_option(kRegister, overrides.begin()->first, {});
     const auto group = [](const CorrespondenceSet& matches) {
       return answer_of(matches, register_pair(matches, std::nullopt), built_in_confidence().table);
     };
     return ConfiguredGrouper{group, {}, proposers_memory};
   };
-  return {kRegister, "Registration (register)", "poses of several groupers, chosen on the surfaces where there are any", "",
-          {}, configure};
+  return {kRegister,
+          "Registration (register)",
+          "poses of several groupers, chosen on the surfaces where there are any",
+          "",
+          {},
+          configure};
 }
 
 }  // namespace

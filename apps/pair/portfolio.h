@@ -42,7 +42,8 @@ constexpr char kRegister[] = "register";
 
 /// Gives every refined pose that has no probability that of the model of tables, by the poses of register_pair. Returns the signals
 /// of those, one for each record.
-std::vector<std::optional<ConfidenceSignals>> rate_poses(std::vector<MethodRecord>& records, const CorrespondenceSet& matches,
-                const ParallelFor& parallel = one_by_one);
+std::vector<std::optional<ConfidenceSignals>> rate_poses(std::vector<MethodRecord>& records,
+                                                         const CorrespondenceSet& matches,
+                                                         const ParallelFor& parallel = one_by_one);
 
 }  // namespace corral

@@ -42,13 +42,12 @@ class Surfaces {
 
   RefinedSurface refine(const RigidTransform& start) const {
     NearestTracker tracker(tree_);
-    return refine_surface({{given_.source.vertices, source_normals_},
-                           {given_.target.vertices, target_normals_},
-                           resolution_,
-                           [&](const Points& queries, double limit) -> const PointPairs& {
-                             return tracker.pair(queries, limit);
-                           }},
-                          start);
+    return refine_surface(
+        {{given_.source.vertices, source_normals_},
+         {given_.target.vertices, target_normals_},
+         resolution_,
+         [&](const Points& queries, double limit) -> const PointPairs& { return tracker.pair(queries, limit); }},
+        start);
   }
 
   double share_in_front(const RigidTransform& pose) const {

@@ -21,17 +21,17 @@ namespace corral {
 struct ProposedPose {
   std::string method;  ///< the first grouper that proposed it
   RigidTransform target_from_source;
-  int support = 0;                 ///< matches within 5 pr
-  double score = 0;                ///< SurfaceCoverage within 4 pr; of a table, the mean of 1 - (e/5 pr)^2 over all matches, 0 beyond
+  int support = 0;   ///< matches within 5 pr
+  double score = 0;  ///< SurfaceCoverage within 4 pr; of a table, the mean of 1 - (e/5 pr)^2 over all matches, 0 beyond
   SurfaceEvidence surfaces;
 };
 
 /// The poses of a pair without a truth.
 struct Registration {
-  std::vector<ProposedPose> poses;             ///< the best first, farther than 5 pr apart; empty if there is none
-  std::optional<ConfidenceSignals> signals;    ///< of the best
-  std::vector<std::string> methods;            ///< the groupers that answered
-  OtherPoses others;                           ///< for the signals of any pose of the pair
+  std::vector<ProposedPose> poses;           ///< the best first, farther than 5 pr apart; empty if there is none
+  std::optional<ConfidenceSignals> signals;  ///< of the best
+  std::vector<std::string> methods;          ///< the groupers that answered
+  OtherPoses others;                         ///< for the signals of any pose of the pair
 };
 
 /// The surfaces beside a table of matches.

@@ -68,7 +68,8 @@ std::string report_page(const std::vector<StudyFolder>& runs, const std::vector<
                         const PageOptions& options) {
   const EmbeddedFiles& files = embedded_page();
   std::vector<std::string> scripts = libraries(options.scripts);
-  for (const char* name : {"data.js", "zoom.js", "panels.js", "choices.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
+  for (const char* name :
+       {"data.js", "zoom.js", "panels.js", "choices.js", "surfaces.js", "pair_view.js", "records.js", "report.js"})
     scripts.push_back(files.at(name));
   std::map<std::string, std::string> parts = {{"title", text_in_html(options.title)},
                                               {"style", files.at("report.css")}};

@@ -177,8 +177,8 @@ Json styles_of(const std::vector<StudyResults>& studies) {
 }
 
 Json share_json(const MethodShare& share) {
-  return {{"method", share.method}, {"pairs", share.pairs}, {"success", rounded(share.success)}, {"low", rounded(share.low)},
-          {"high", rounded(share.high)}, {"median_ms", rounded(share.median_ms)}};
+  return {{"method", share.method},    {"pairs", share.pairs},        {"success", rounded(share.success)},
+          {"low", rounded(share.low)}, {"high", rounded(share.high)}, {"median_ms", rounded(share.median_ms)}};
 }
 
 Json choice_of(const SetTable& table) {
@@ -194,14 +194,21 @@ Json choice_of(const SetTable& table) {
       if (cell.pairs == 0) continue;
       Json best = Json::array();
       for (const MethodShare& each : cell.best) best.push_back(share_json(each));
-      cells.push_back({{"correct", correct_share_text(share)}, {"matches", match_count_text(count)}, {"pairs", cell.pairs}, {"best", best}});
+      cells.push_back({{"correct", correct_share_text(share)},
+                       {"matches", match_count_text(count)},
+                       {"pairs", cell.pairs},
+                       {"best", best}});
     }
-  return {{"dataset", choice.dataset}, {"pairs", choice.pairs}, {"methods", shown},
-          {"perfect", choice.perfect ? share_json(*choice.perfect) : Json(nullptr)}, {"cells", cells}};
+  return {{"dataset", choice.dataset},
+          {"pairs", choice.pairs},
+          {"methods", shown},
+          {"perfect", choice.perfect ? share_json(*choice.perfect) : Json(nullptr)},
+          {"cells", cells}};
 }
 
 Json found_json(const FoundStatement& found) {
-  return {{"text", found.text}, {"dataset", found.dataset}, {"pairs", found.pairs}, {"margin", rounded(found.margin)},
+  return {{"text", found.text},        {"dataset", found.dataset},
+          {"pairs", found.pairs},      {"margin", rounded(found.margin)},
           {"low", rounded(found.low)}, {"high", rounded(found.high)}};
 }
 

@@ -79,12 +79,12 @@ void draw_coverage(const std::vector<RatedPoses>& methods, Panel& panel) {
     if (method.right.empty()) continue;
     std::vector<std::size_t> order(method.right.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return method.probabilities[a] > method.probabilities[b];
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return method.probabilities[a] > method.probabilities[b]; });
     PanelSeries series{method.method, {}};
     for (int tenth = 1; tenth <= kTenths; ++tenth) {
-      const auto kept = static_cast<std::ptrdiff_t>((order.size() * static_cast<std::size_t>(tenth) + kTenths - 1) / kTenths);
+      const auto kept =
+          static_cast<std::ptrdiff_t>((order.size() * static_cast<std::size_t>(tenth) + kTenths - 1) / kTenths);
       const auto right =
           std::count_if(order.begin(), order.begin() + kept, [&](std::size_t i) { return method.right[i]; });
       series.values.push_back({static_cast<double>(right) / static_cast<double>(kept), {}, {}});

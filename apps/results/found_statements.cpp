@@ -57,7 +57,8 @@ class SetStatements {
 
   std::optional<FoundStatement> perfect() const {
     if (!choice_.perfect || choice_.methods.empty()) return std::nullopt;
-    return compared(column("oracle"), column(best()), "All correct matches register more pairs than the best grouper, " + best());
+    return compared(column("oracle"), column(best()),
+                    "All correct matches register more pairs than the best grouper, " + best());
   }
 
   std::optional<FoundStatement> against_best(const std::string& measure, const std::string& words) const {
@@ -76,7 +77,8 @@ class SetStatements {
     for (std::size_t bin = 0; bin < kCorrectShares.size(); ++bin) {
       std::vector<std::size_t> rows;
       for (const std::size_t row : all_)
-        if (!std::isnan(table_.correct_share[row]) && correct_share_bin(table_.correct_share[row]) == bin) rows.push_back(row);
+        if (!std::isnan(table_.correct_share[row]) && correct_share_bin(table_.correct_share[row]) == bin)
+          rows.push_back(row);
       if (rows.size() < kFewestPairs) continue;
       std::vector<std::pair<double, std::string>> shares;  // of groupers with any pose there
       for (const MethodShare& each : choice_.methods) {
@@ -89,8 +91,9 @@ class SetStatements {
       if (shares.size() < 2 || shares.front().first < 0.5) continue;
       const std::string &first = shares[0].second, &second = shares[1].second;
       const Compared both(column(first), column(second), rows);
-      return told(both, "From " + correct_share_text(bin) + " of correct matches on a grouper registers half of the pairs; there " +
-                            first + " registers most, before " + second);
+      return told(both, "From " + correct_share_text(bin) +
+                            " of correct matches on a grouper registers half of the pairs; there " + first +
+                            " registers most, before " + second);
     }
     return std::nullopt;
   }
@@ -104,7 +107,8 @@ class SetStatements {
     if (statement) statement->text = text + ": " + both.shares();
     return statement;
   }
-  std::optional<FoundStatement> compared(const RowNumbers& first, const RowNumbers& second, const std::string& text) const {
+  std::optional<FoundStatement> compared(const RowNumbers& first, const RowNumbers& second,
+                                         const std::string& text) const {
     return told(Compared(first, second, all_), text);
   }
 

@@ -13,7 +13,8 @@ struct FoundStatement {
   std::string text;
   std::string dataset;
   int pairs = 0;  ///< that the number is over
-  double margin = 0, low = 0, high = 0;  ///< mean difference on the same pairs (of shares, so without a unit), bootstrap interval of 95 %
+  double margin = 0, low = 0,
+         high = 0;  ///< mean difference on the same pairs (of shares, so without a unit), bootstrap interval of 95 %
 
   bool is_clear() const { return low > 0; }  ///< the interval is above 0
 };

@@ -31,7 +31,8 @@ class SetTableBuilder {
     for (const std::string& method : methods) add_method(method);
     for (const LevelTable& level : experiment.levels)
       for (std::size_t row = 0; row < level.pairs.size(); ++row)
-        if (level.roles[row] == PairRole::Judged && known_.insert(level.pairs[row]).second) add_row(level, row, methods);
+        if (level.roles[row] == PairRole::Judged && known_.insert(level.pairs[row]).second)
+          add_row(level, row, methods);
     for (const StudyRecord& record : study.run->records)
       if (record.experiment == experiment.info.name && record.dataset == experiment.info.dataset && record.time_ms)
         times_[record.method].push_back(*record.time_ms);
@@ -40,7 +41,8 @@ class SetTableBuilder {
   SetTable table() && {
     for (auto& [method, times] : times_) table_.median_ms[method] = quantile_of(std::move(times), 0.5);
     // The oracle stands last.
-    std::stable_partition(table_.methods.begin(), table_.methods.end(), [](const std::string& method) { return method != kOracle; });
+    std::stable_partition(table_.methods.begin(), table_.methods.end(),
+                          [](const std::string& method) { return method != kOracle; });
     return std::move(table_);
   }
 
@@ -58,7 +60,8 @@ class SetTableBuilder {
     table_.correct_share.push_back(at(level.column(measure("inlier_ratio"), ""), row));
     for (auto& [method, columns] : table_.numbers) {
       const bool is_here = std::find(methods.begin(), methods.end(), method) != methods.end();
-      for (auto& [name, column] : columns) column.push_back(is_here ? at(level.column(measure(name), method), row) : kAbsent);
+      for (auto& [name, column] : columns)
+        column.push_back(is_here ? at(level.column(measure(name), method), row) : kAbsent);
     }
   }
 
@@ -89,7 +92,9 @@ std::vector<MethodShare> shares_of(const SetTable& table, const std::vector<std:
     MethodShare share = share_of(table, method, rows);
     if (share.pairs > 0) shares.push_back(std::move(share));
   }
-  const auto time = [](const MethodShare& share) { return share.median_ms.value_or(std::numeric_limits<double>::infinity()); };
+  const auto time = [](const MethodShare& share) {
+    return share.median_ms.value_or(std::numeric_limits<double>::infinity());
+  };
   std::stable_sort(shares.begin(), shares.end(), [&](const MethodShare& a, const MethodShare& b) {
     return a.success != b.success ? a.success > b.success : time(a) < time(b);
   });
@@ -144,9 +149,10 @@ MethodChoice choose_method(const SetTable& table) {
   }
   choice.methods = shares_of(table, all);
   for (const MethodShare& each : choice.methods)
-    choice.is_on_front.push_back(each.median_ms && std::none_of(choice.methods.begin(), choice.methods.end(), [&](const MethodShare& other) {
-      return other.median_ms && other.success >= each.success && *other.median_ms < *each.median_ms;
-    }));
+    choice.is_on_front.push_back(
+        each.median_ms && std::none_of(choice.methods.begin(), choice.methods.end(), [&](const MethodShare& other) {
+          return other.median_ms && other.success >= each.success && *other.median_ms < *each.median_ms;
+        }));
   if (const MethodShare perfect = share_of(table, kOracle, all); perfect.pairs > 0) choice.perfect = perfect;
   for (const auto& by_count : rows) {
     auto& cells = choice.cells.emplace_back();

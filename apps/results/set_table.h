@@ -16,12 +16,14 @@ namespace corral {
 struct SetTable {
   std::string dataset;
   std::vector<std::string> pairs;
-  RowNumbers matches, correct_share;                ///< of each pair
-  std::vector<std::string> methods;                 ///< in the order of the experiments, then the oracle if it is there
+  RowNumbers matches, correct_share;  ///< of each pair
+  std::vector<std::string> methods;   ///< in the order of the experiments, then the oracle if it is there
   std::map<std::string, std::map<std::string, RowNumbers>> numbers;  ///< by method and measure; NaN where there is none
-  std::map<std::string, double> median_ms;          ///< by method
+  std::map<std::string, double> median_ms;                           ///< by method
 
-  const RowNumbers& column(const std::string& method, const std::string& measure) const { return numbers.at(method).at(measure); }
+  const RowNumbers& column(const std::string& method, const std::string& measure) const {
+    return numbers.at(method).at(measure);
+  }
 };
 
 /// A table for each data set, in the order of the studies. A pair that several experiments or levels have is taken from the

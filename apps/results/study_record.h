@@ -27,20 +27,20 @@ struct StudyRecord {
   SharedText experiment, dataset, level, pair;
   SharedText scene;  ///< of the pair (scene_of); empty if it belongs to none
   SharedText method;
-  int repeat = 0;               ///< from 0
+  int repeat = 0;        ///< from 0
   OptionalNumber value;  ///< of the swept attribute
-  MethodStatus status;          ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
-  SharedText truth;             ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
+  MethodStatus status;   ///< that of MethodRecord; Failed, with the cause, if the pair could not be matched
+  SharedText truth;      ///< TruthFit::name: whether the truth can belong to the pair; empty without a truth
   std::optional<int> matches, true_matches, selected, correct;
-  std::optional<int> keypoints_in_overlap;      ///< of the matched ones; absent for a table of matches
-  OptionalNumber precision, recall, f1;  ///< of this pair; precision is absent where nothing was selected
-  OptionalNumber frame_share;            ///< share of correct matches whose frames agree within 10 degrees
+  std::optional<int> keypoints_in_overlap;  ///< of the matched ones; absent for a table of matches
+  OptionalNumber precision, recall, f1;     ///< of this pair; precision is absent where nothing was selected
+  OptionalNumber frame_share;               ///< share of correct matches whose frames agree within 10 degrees
   OptionalNumber metres_per_pr;  ///< where the data set is in metres: for the criteria that the field states so
   PoseScores initial, refined, all_rows, dense;  ///< of the fit to the selection, the refined pose, and from there
                                                  ///< over all matches and over the whole surfaces
-  OptionalNumber time_ms;                 ///< of the grouping alone
-  OptionalNumber stated_time_ms;          ///< of a method of another program, as that says
-  OptionalNumber confidence;              ///< probability that the refined pose registers the pair
+  OptionalNumber time_ms;                        ///< of the grouping alone
+  OptionalNumber stated_time_ms;                 ///< of a method of another program, as that says
+  OptionalNumber confidence;                     ///< probability that the refined pose registers the pair
   SharedText selection;                          ///< file of selections in the study folder; empty if there is none
 };
 

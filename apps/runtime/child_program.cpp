@@ -50,7 +50,8 @@ struct Pipe {
   explicit Pipe(Ends ends) : out(ends.out), in(ends.in) {}
   static Ends make(const std::string& program) {
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw IoError(program, "", std::string("cannot be started: ") + std::strerror(errno));
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+      throw IoError(program, "", std::string("cannot be started: ") + std::strerror(errno));
     return {ends[0], ends[1]};
   }
 };

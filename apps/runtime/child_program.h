@@ -18,7 +18,8 @@ struct ChildEnd {
   int status = 0;           ///< its exit status, or 128 + the signal that ended it
   bool is_timeout = false;  ///< it was killed at its limit of time
   double milliseconds = 0;  ///< wall time from its start to its end
-  std::string messages;     ///< the end of what it wrote to standard output and standard error, kChildMessages bytes at most
+  std::string
+      messages;  ///< the end of what it wrote to standard output and standard error, kChildMessages bytes at most
 };
 
 constexpr std::size_t kChildMessages = 4096;           ///< bytes of its messages that are kept

@@ -64,7 +64,8 @@ std::optional<double> median_time(const std::vector<StudyRecord>& records, const
   return quantile_of(times, 0.5);
 }
 
-BoardRow row_of(const StudyResults& study, const ExperimentTable& table, const Judged& judged, const std::string& method) {
+BoardRow row_of(const StudyResults& study, const ExperimentTable& table, const Judged& judged,
+                const std::string& method) {
   BoardRow row;
   row.method = method;
   row.is_submitted = table.info.titles.count(method) > 0;
@@ -125,18 +126,20 @@ std::vector<Board> make_boards(const std::vector<StudyResults>& studies) {
       };
       auto board = std::find_if(boards.begin(), boards.end(), is_it);
       if (board == boards.end()) {
-        boards.push_back({table.info.name, table.info.dataset, table.info.title, static_cast<int>(judged.pairs.size()), {}});
+        boards.push_back(
+            {table.info.name, table.info.dataset, table.info.title, static_cast<int>(judged.pairs.size()), {}});
         pairs.push_back(judged);
         board = boards.end() - 1;
       } else if (pairs[static_cast<std::size_t>(board - boards.begin())].pairs != judged.pairs) {
-        throw IoError(study.run->folder, table.info.name, "judges other pairs of " + table.info.dataset +
-                                                              " than another study, expected the same");
+        throw IoError(study.run->folder, table.info.name,
+                      "judges other pairs of " + table.info.dataset + " than another study, expected the same");
       }
       std::vector<std::string> methods = table.info.methods;
       if (!board->row_of("oracle")) methods.push_back("oracle");
       for (const std::string& method : methods) {
         if (board->row_of(method))
-          throw IoError(study.run->folder, table.info.name, "has the method " + method + ", which another study has too");
+          throw IoError(study.run->folder, table.info.name,
+                        "has the method " + method + ", which another study has too");
         board->rows.push_back(row_of(study, table, judged, method));
       }
     }

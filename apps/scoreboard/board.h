@@ -17,7 +17,8 @@ struct BoardRow {
   bool is_submitted = false;  ///< its answers came in files
   int rank = 0;               ///< by success, from 1; equal shares have the same; 0: it applies to no table
   SuccessShare all;
-  std::vector<std::optional<SuccessShare>> by_share;  ///< by the share of correct matches, one for each of kCorrectShares
+  std::vector<std::optional<SuccessShare>>
+      by_share;  ///< by the share of correct matches, one for each of kCorrectShares
   std::optional<double> precision, recall, f1, confidence;
   std::optional<double> median_ms;
   bool is_time_stated = false;  ///< by the method, not taken by Corral

@@ -21,13 +21,17 @@ namespace {
 
 std::string table_of(const Dataset& dataset, const DatasetPair& pair) {
   if (pair.matches.empty())
-    throw IoError(dataset.path("pairs.csv"), pair.name, "has no table of matches, expected one in the column matches; 'corral dataset make tables' makes them from surfaces");
+    throw IoError(dataset.path("pairs.csv"), pair.name,
+                  "has no table of matches, expected one in the column matches; 'corral dataset make tables' makes "
+                  "them from surfaces");
   return dataset.path(pair.matches);
 }
 
 std::string method_toml(const Submission& facts) {
   std::string text = "# Made by 'corral scoreboard pack'.\n";
-  const auto add = [&](const char* key, const std::string& value) { text += std::string(key) + " = " + toml_text(value) + "\n"; };
+  const auto add = [&](const char* key, const std::string& value) {
+    text += std::string(key) + " = " + toml_text(value) + "\n";
+  };
   add("name", facts.name), add("title", facts.title), add("dataset", facts.dataset);
   add("url", facts.url), add("licence", facts.licence), add("needs", facts.needs);
   return text + "deterministic = " + (facts.is_deterministic ? "true" : "false") + "\n";
@@ -58,11 +62,13 @@ Submission read_submission(const std::string& folder) {
   found.needs = table.text("needs").value_or("");
   found.is_deterministic = table.flag("deterministic").value_or(false);
   std::error_code ignored;
-  found.has_poses = std::filesystem::directory_iterator(folder + "/poses", ignored) != std::filesystem::directory_iterator();
+  found.has_poses =
+      std::filesystem::directory_iterator(folder + "/poses", ignored) != std::filesystem::directory_iterator();
   return found;
 }
 
-std::vector<FileContent> pack_submission(const SubmittedMethod& method, const Dataset& dataset, const std::string& folder,
+std::vector<FileContent> pack_submission(const SubmittedMethod& method, const Dataset& dataset,
+                                         const std::string& folder,
                                          const std::function<void(const std::string& pair)>& observer) {
   Submission facts = method.facts;
   facts.dataset = dataset.name;
@@ -83,7 +89,8 @@ std::vector<FileContent> pack_submission(const SubmittedMethod& method, const Da
       continue;
     }
     times.rows.push_back({pair.name, to_text(watch.lap_ms())});
-    files.push_back({folder + "/labels/" + pair.name + ".csv", group_text({matches.size(), found.selected, found.scores})});
+    files.push_back(
+        {folder + "/labels/" + pair.name + ".csv", group_text({matches.size(), found.selected, found.scores})});
     if (found.target_from_source)
       files.push_back({folder + "/poses/" + pair.name + ".txt", transform_text(*found.target_from_source)});
   }
@@ -101,7 +108,8 @@ std::vector<std::string> check_submission(const Submission& submission, const Da
   const int names = tables.column("pair"), hashes = tables.column("hash");
   if (names < 0 || hashes < 0) throw IoError(listed, "header", "expected the columns pair and hash");
   std::map<std::string, std::string> hash_of;
-  for (const auto& row : tables.rows) hash_of[row[static_cast<std::size_t>(names)]] = row[static_cast<std::size_t>(hashes)];
+  for (const auto& row : tables.rows)
+    hash_of[row[static_cast<std::size_t>(names)]] = row[static_cast<std::size_t>(hashes)];
   for (const DatasetPair& pair : dataset.pairs) {
     const std::string path = table_of(dataset, pair);
     const auto found = hash_of.find(pair.name);
@@ -122,7 +130,8 @@ std::vector<std::string> check_submission(const Submission& submission, const Da
       problems.push_back(error.what());
     }
   }
-  for (const auto& [pair, hash] : hash_of) problems.push_back("it has the table " + pair + ", which the data set lacks");
+  for (const auto& [pair, hash] : hash_of)
+    problems.push_back("it has the table " + pair + ", which the data set lacks");
   return problems;
 }
 

@@ -118,9 +118,7 @@ std::string digits_of(const XXH128_hash_t& hash) {
 
 }  // namespace
 
-std::string content_hash(const std::string& content) {
-  return digits_of(XXH3_128bits(content.data(), content.size()));
-}
+std::string content_hash(const std::string& content) { return digits_of(XXH3_128bits(content.data(), content.size())); }
 
 struct ContentHasher::State {
   XXH3_state_t* state = XXH3_createState();
@@ -133,9 +131,7 @@ struct ContentHasher::State {
 ContentHasher::ContentHasher() : state_(std::make_unique<State>()) {}
 ContentHasher::~ContentHasher() = default;
 
-void ContentHasher::add(const std::string& piece) {
-  XXH3_128bits_update(state_->state, piece.data(), piece.size());
-}
+void ContentHasher::add(const std::string& piece) { XXH3_128bits_update(state_->state, piece.data(), piece.size()); }
 
 std::string ContentHasher::hash() const { return digits_of(XXH3_128bits_digest(state_->state)); }
 

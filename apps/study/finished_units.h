@@ -34,9 +34,9 @@ class FinishedUnits {
   bool has(std::size_t unit) const { return unit_files_[unit].has_value(); }
   const std::vector<UnitResult>& results() const {
     return results_;
-  }  ///< one for each unit, empty unless it is finished
-  const InputHashes& inputs() const { return inputs_; }                ///< of all files that are known
-  const std::vector<double>& seconds() const { return seconds_; }      ///< that each unit took
+  }                                                                ///< one for each unit, empty unless it is finished
+  const InputHashes& inputs() const { return inputs_; }            ///< of all files that are known
+  const std::vector<double>& seconds() const { return seconds_; }  ///< that each unit took
   const std::set<std::string>& machines() const { return machines_; }  ///< MachineInfo of the journals, as JSON
   /// How many units two different shards both have.
   const std::map<std::pair<Shard, Shard>, int>& overlaps() const { return overlaps_; }

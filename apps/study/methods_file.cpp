@@ -15,8 +15,9 @@ namespace {
 std::string name_of(const TomlTable& table) {
   const std::string name = table.text("name").value_or("");
   if (!is_method_name(name))
-    table.fail("name", "found " + corral::quoted(name) +
-                           ", expected name = \"...\" of letters, digits and . _ + - only, and none that is in every study");
+    table.fail("name",
+               "found " + corral::quoted(name) +
+                   ", expected name = \"...\" of letters, digits and . _ + - only, and none that is in every study");
   return name;
 }
 
@@ -79,8 +80,7 @@ ForeignAnswer answer_to(const ForeignMethod& method, const Dataset& dataset, con
 void add_methods(Experiment& experiment, const std::vector<ForeignMethod>& methods) {
   if (methods.empty()) return;
   if (experiment.sweep == Sweep::TableSize)
-    throw IoError(experiment.info.name, "",
-                  "takes times of groupers alone; expected no methods of other programs");
+    throw IoError(experiment.info.name, "", "takes times of groupers alone; expected no methods of other programs");
   for (const ForeignMethod& method : methods) {
     experiment.info.methods.push_back(method.name);
     experiment.info.titles[method.name] = method.title;

@@ -251,9 +251,10 @@ std::string bin_label(double low, double high, bool is_last) {
 
 Experiment parse_experiment(const std::string& path, const std::string& text) {
   const TomlTable table = TomlTable::parse(path, text);
-  table.only({"name",    "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
-              "bins",    "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
-              "repeats", "seed",   "dense",  "tables",   "vary",    "rows",      "select",       "except", "confidence"});
+  table.only({"name",      "title",  "figure", "preset",   "dataset", "attribute", "axis",         "levels",
+              "bins",      "labels", "filter", "groupers", "options", "matching",  "threshold_pr", "least_true_matches",
+              "repeats",   "seed",   "dense",  "tables",   "vary",    "rows",      "select",       "except",
+              "confidence"});
   Experiment experiment;
   ExperimentInfo& info = experiment.info;
   info.name = required_text(table, "name");

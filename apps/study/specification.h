@@ -57,20 +57,20 @@ struct Experiment {
   Sweep sweep = Sweep::Column;
   std::vector<AttributeFilter> filters;
   std::vector<AttributeFilter> exceptions;  ///< pairs whose attribute is one of these are left out
-  MatchSettings matching;                 ///< its resolution holds if `resolution` is given; without options
-  std::optional<std::string> resolution;  ///< else that of the data set
-  OptionsByName options;                  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)
-  std::string varied;                     ///< of a measured sweep: "harris.radius_pr"; empty if there is none
+  MatchSettings matching;                   ///< its resolution holds if `resolution` is given; without options
+  std::optional<std::string> resolution;    ///< else that of the data set
+  OptionsByName options;  ///< of groupers, detectors and descriptors, beside the defaults (the paper's)
+  std::string varied;     ///< of a measured sweep: "harris.radius_pr"; empty if there is none
   std::vector<double> varied_values;
   int repeats = 1;  ///< of stochastic groupers; of all groupers for times
   std::uint64_t seed = 1;
-  bool dense = false;                  ///< also refine on the whole surfaces
-  bool all_rows = false;               ///< also refine over all matches
-  bool confidence = false;             ///< also the probability that each pose is right (rate_poses)
-  bool by_surface = false;             ///< surfaces choose among the poses of a grouper (SurfaceChoice)
+  bool dense = false;                       ///< also refine on the whole surfaces
+  bool all_rows = false;                    ///< also refine over all matches
+  bool confidence = false;                  ///< also the probability that each pose is right (rate_poses)
+  bool by_surface = false;                  ///< surfaces choose among the poses of a grouper (SurfaceChoice)
   StudyExtent extent = StudyExtent::Poses;  ///< how far the work on selections goes
-  int tables = 1;                      ///< of Sweep::TableSize: pairs whose tables are timed
-  std::vector<ForeignMethod> foreign;  ///< behind the groupers in `info.methods`
+  int tables = 1;                           ///< of Sweep::TableSize: pairs whose tables are timed
+  std::vector<ForeignMethod> foreign;       ///< behind the groupers in `info.methods`
 };
 
 /// The text of an experiment: a file, or the name of a built-in one (see built_in_experiments). Throws IoError, with a

@@ -65,9 +65,11 @@ Json to_json(const StudyCall& call) {
                          {"memory_bytes", external.memory_bytes}});
   if (call.methods) methods = {{"path", absolute(call.methods->path)}, {"text", call.methods->text}};
   for (const auto& [path, text] : call.experiments) experiments.push_back({{"path", path}, {"text", text}});
-  return {{"experiments", experiments},   {"methods", methods},  {"data", absolute(call.data)},
-          {"options", call.options},      {"dense", call.dense}, {"all_rows", call.all_rows},
-          {"by_surface", call.by_surface}, {"confidence", call.confidence}, {"externals", externals},  {"plugins", plugins}};
+  return {{"experiments", experiments},    {"methods", methods},
+          {"data", absolute(call.data)},   {"options", call.options},
+          {"dense", call.dense},           {"all_rows", call.all_rows},
+          {"by_surface", call.by_surface}, {"confidence", call.confidence},
+          {"externals", externals},        {"plugins", plugins}};
 }
 
 StudyCall study_call_of(const Json& json) {

@@ -15,12 +15,12 @@ struct StudyCall {
   struct NamedText {
     std::string path, text;
   };
-  std::vector<NamedText> experiments;                        ///< as read: files, or built-in experiments
-  std::optional<NamedText> methods;                          ///< methods of other programs, for every experiment
-  std::string data;                                          ///< a data set, or a folder of data sets
-  OptionsByName options;                                     ///< of --set
-  std::vector<std::string> plugins;                          ///< of --plugin
-  std::vector<ExternalMethod> externals;                     ///< of --external
+  std::vector<NamedText> experiments;     ///< as read: files, or built-in experiments
+  std::optional<NamedText> methods;       ///< methods of other programs, for every experiment
+  std::string data;                       ///< a data set, or a folder of data sets
+  OptionsByName options;                  ///< of --set
+  std::vector<std::string> plugins;       ///< of --plugin
+  std::vector<ExternalMethod> externals;  ///< of --external
   bool dense = false, all_rows = false, by_surface = false, confidence = false;  ///< as of Experiment, for all of them
 };
 

@@ -43,8 +43,8 @@ struct WorkUnit {
   bool shares_source = false, shares_target = false;   ///< another unit describes that mesh in the same way
   std::map<std::string, std::vector<int>> selections;  ///< file in the study folder -> tasks whose selections it holds
   bool all_rows = false, by_surface = false, confidence = false;  ///< as of Experiment
-  std::string scene = {};                              ///< scene_of the pair
-  StudyExtent extent = StudyExtent::Scores;            ///< the furthest of its experiments
+  std::string scene = {};                                         ///< scene_of the pair
+  StudyExtent extent = StudyExtent::Scores;                       ///< the furthest of its experiments
 
   /// Those of the pair, then those of the answers of other programs and of the programs themselves.
   std::vector<std::string> files() const;

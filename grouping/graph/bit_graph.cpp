@@ -49,8 +49,8 @@ HWY_FLATTEN void count_common(const BitGraph& graph, int node, const Indices& ot
 }
 
 /// Adds the common neighbours in some words for each edge of a block, whose rows are in `strip`.
-HWY_FLATTEN void add_common(const BitGraph& graph, const BitGraph::NodeBlock& block, const std::uint64_t* strip, int word,
-                            int words, int* counts) {
+HWY_FLATTEN void add_common(const BitGraph& graph, const BitGraph::NodeBlock& block, const std::uint64_t* strip,
+                            int word, int words, int* counts) {
   graph.for_edges(block, [&](int i, int j) {
     const std::uint64_t* const row = strip + std::ptrdiff_t{i - 64 * block.first} * words;
     *counts++ += static_cast<int>(count_shared(row, graph.neighbors(j) + word, static_cast<std::size_t>(words)));

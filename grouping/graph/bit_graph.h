@@ -39,7 +39,8 @@ class BitGraph {
     std::vector<Word> nodes;   ///< a bit for each node of the range
     std::vector<char> wanted;  ///< for each node of the graph below `end`, not 0 if it counts
   };
-  static constexpr int kBlock = 8, kStrip = 128;  ///< words of a range, and of a strip of its rows, which fits into the cache
+  static constexpr int kBlock = 8,
+                       kStrip = 128;  ///< words of a range, and of a strip of its rows, which fits into the cache
   /// Bytes for the counts of a block of at most so many edges.
   static double memory_of_block(int nodes, double edges) {
     return 4 * std::min(edges, 64.0 * kBlock * nodes) + 64.0 * kBlock * kStrip * sizeof(Word) + nodes;

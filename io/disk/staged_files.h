@@ -16,7 +16,7 @@ class StagedFiles {
   StagedFiles(const StagedFiles&) = delete;
   StagedFiles& operator=(const StagedFiles&) = delete;
 
-  void begin(const std::string& path);    ///< a further file; the one before is whole. Throws IoError
+  void begin(const std::string& path);     ///< a further file; the one before is whole. Throws IoError
   void write(const std::string& content);  ///< at the end of the file begun last. Throws IoError
   /// Replaces all files. When it returns, they survive a power cut. Throws IoError if two have the same place; only if the
   /// last step fails, which puts the new names on the disk, the new files are there.

@@ -11,8 +11,8 @@
 #include <optional>
 #include <set>
 
-#include "grouping/graph/compatibility_graph.h"
 #include "grouping/columns/filter_loops.h"
+#include "grouping/graph/compatibility_graph.h"
 #include "grouping/registry.h"
 #include "grouping/spectral.h"
 #include "kernel/all_finite.h"

@@ -53,7 +53,13 @@ void write_scenes(const std::string& folder, const std::vector<std::string>& met
 
 PoseScores random_pose(RandomStream& stream) {
   const double error = std::exp(2.5 * stream.normal());
-  return {error * (0.5 + stream.uniform()), error * (1 + stream.uniform()), error, error * 1.1, error / 300, error / 120, error / 400};
+  return {error * (0.5 + stream.uniform()),
+          error * (1 + stream.uniform()),
+          error,
+          error * 1.1,
+          error / 300,
+          error / 120,
+          error / 400};
 }
 
 /// The record of a grouper on a pair; `common` is what all of its groupers share.

@@ -9,7 +9,7 @@ namespace corral::peers {
 namespace {
 
 FlannNearest search_exactly(const Eigen::MatrixXf& source, const Eigen::MatrixXf& target,
-                          const flann::IndexParams& params) {
+                            const flann::IndexParams& params) {
   if (target.cols() < 2) throw std::invalid_argument("FLANN is asked for two neighbours: at least two targets");
   // FLANN takes rows, which in a column-major matrix are our columns; it does not write to what it is given.
   const auto wrap = [](const Eigen::MatrixXf& columns) {

@@ -11,7 +11,7 @@ namespace corral::testing {
 
 /// What a method does on each pair of successes_study().
 struct Successes {
-  std::vector<bool> registers;  ///< after the refinement
+  std::vector<bool> registers;    ///< after the refinement
   std::vector<bool> before = {};  ///< and before it; the same if it is empty
   double precision = 0.1, recall = 0.1;
   double time_ms = 1;

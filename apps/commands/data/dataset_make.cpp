@@ -212,7 +212,8 @@ void add_table_set(CLI::App& make, Action& action) {
     std::vector<std::string> set;
     int threads = 0;
   };
-  auto* command = make.add_subcommand("tables", "Tables of matches from a set of surfaces, for scoreboards and challenges");
+  auto* command =
+      make.add_subcommand("tables", "Tables of matches from a set of surfaces, for scoreboards and challenges");
   auto settings = std::make_shared<Settings>();
   command->add_option("--data", settings->options.data, "A data set with surfaces")->type_name("FOLDER")->required();
   add_output(*command, settings->options.output);

@@ -98,7 +98,8 @@ std::vector<std::string> method_names(const std::string& text) {
 
 std::string call_text(const std::string& method, int matches, int repeat) {
   constexpr double kLong = 10;
-  const double seconds = repeat * 1e-9 * static_cast<double>(call_nanoseconds(method, static_cast<std::uint64_t>(matches)));
+  const double seconds =
+      repeat * 1e-9 * static_cast<double>(call_nanoseconds(method, static_cast<std::uint64_t>(matches)));
   const std::string text = method + " on " + std::to_string(matches) + " matches";
   return seconds < kLong ? text : text + ", expected to take about " + std::to_string(std::lround(seconds)) + " s";
 }

@@ -41,19 +41,19 @@ std::string call_text(const std::string& method, int matches, int repeat);
 /// What came of it.
 struct PairRun {
   std::vector<std::string> methods;
-  std::vector<ConfiguredGrouper> groupers;    ///< of the first of these
-  std::vector<ExternalMethod> externals;      ///< of the others
+  std::vector<ConfiguredGrouper> groupers;  ///< of the first of these
+  std::vector<ExternalMethod> externals;    ///< of the others
   MatchedPair pair;
   std::optional<PairTruth> truth;
   std::vector<MethodRecord> records;
   std::vector<std::optional<ConfidenceSignals>> signals;  ///< of the records whose pose was rated here
-  std::vector<MethodRecord> bounds;          ///< with a truth: the oracle and the baseline
-  std::vector<bool> labels;                  ///< with a truth: which matches are correct
-  std::optional<FrameRepeatability> frames;  ///< with a truth
-  std::optional<TruthFit> fit;               ///< with a truth
-  std::optional<double> opposed_share;       ///< of normals, with a truth by which the pair is lost before the grouping
-  PairCounts counts;                         ///< with --explain
-  std::vector<Explanation> explanations;     ///< with --explain: of the pair, then of each grouper
+  std::vector<MethodRecord> bounds;                       ///< with a truth: the oracle and the baseline
+  std::vector<bool> labels;                               ///< with a truth: which matches are correct
+  std::optional<FrameRepeatability> frames;               ///< with a truth
+  std::optional<TruthFit> fit;                            ///< with a truth
+  std::optional<double> opposed_share;    ///< of normals, with a truth by which the pair is lost before the grouping
+  PairCounts counts;                      ///< with --explain
+  std::vector<Explanation> explanations;  ///< with --explain: of the pair, then of each grouper
 
   std::optional<int> true_matches() const {
     if (!truth) return std::nullopt;

@@ -47,7 +47,8 @@ void check(const Settings& settings) {
   if (settings.source.empty() && !(settings.apply.empty() && settings.picture.empty()))
     throw UsageError("--apply and --picture: need the two meshes");
   if (!settings.apply.empty()) check_ply_name(settings.apply);
-  if (!settings.picture.empty() && settings.picture.substr(std::max<std::size_t>(settings.picture.size(), 4) - 4) != ".png")
+  if (!settings.picture.empty() &&
+      settings.picture.substr(std::max<std::size_t>(settings.picture.size(), 4) - 4) != ".png")
     throw UsageError("--picture " + settings.picture + ": expected a name that ends in .png");
   check_usage(settings.match);
   keep_inputs({settings.source, settings.target, settings.matches, settings.truth.file}, outputs_of(settings));
@@ -77,7 +78,8 @@ Json confidence_json(const Registration& found, const ConfidenceModel& model) {
           {"outside", beyond < kSignals ? Json(kSignalNames[beyond]) : Json(nullptr)}};
 }
 
-Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors, const ConfidenceModel& model) {
+Json to_json(const Registration& found, int matches, const std::optional<PoseErrors>& errors,
+             const ConfidenceModel& model) {
   Json poses = Json::array(), signals = nullptr, error = nullptr;
   for (const ProposedPose& pose : found.poses) poses.push_back(to_json(pose));
   if (found.signals) {
@@ -89,20 +91,27 @@ Json to_json(const Registration& found, int matches, const std::optional<PoseErr
              {"translation_error_pr", errors->translation_error_pr},
              {"mean_error_pr", errors->points ? Json(errors->points->mean_pr) : Json(nullptr)},
              {"registers", is_registered(errors)}};
-  return {{"matches", matches}, {"methods", found.methods}, {"poses", poses}, {"signals", signals},
-          {"confidence", confidence_json(found, model)}, {"errors", error}};
+  return {{"matches", matches},
+          {"methods", found.methods},
+          {"poses", poses},
+          {"signals", signals},
+          {"confidence", confidence_json(found, model)},
+          {"errors", error}};
 }
 
 std::string in_words(const Registration& found, bool has_surfaces) {
   if (found.poses.empty()) return "no pose: no grouper found one\n";
-  TextTable table(has_surfaces ? std::vector<std::string>{"pose", "grouper", "matches", "coverage", "overlap", "RMS pr", "in front"}
-                               : std::vector<std::string>{"pose", "grouper", "matches", "score"});
+  TextTable table(
+      has_surfaces ? std::vector<std::string>{"pose", "grouper", "matches", "coverage", "overlap", "RMS pr", "in front"}
+                   : std::vector<std::string>{"pose", "grouper", "matches", "score"});
   constexpr std::size_t kShown = 3;
   for (std::size_t i = 0; i < std::min(kShown, found.poses.size()); ++i) {
     const ProposedPose& pose = found.poses[i];
     std::vector<std::string> row = {i == 0 ? "best" : std::to_string(i + 1), pose.method, std::to_string(pose.support),
                                     fixed(pose.score, 3)};
-    if (has_surfaces) row.insert(row.end(), {fixed(pose.surfaces.overlap, 3), fixed(pose.surfaces.rms_pr, 3), fixed(pose.surfaces.in_front, 3)});
+    if (has_surfaces)
+      row.insert(row.end(),
+                 {fixed(pose.surfaces.overlap, 3), fixed(pose.surfaces.rms_pr, 3), fixed(pose.surfaces.in_front, 3)});
     table.add(row);
   }
   return table.str();
@@ -113,14 +122,21 @@ void draw(const Settings& settings, const Surfaces& surfaces, const RigidTransfo
   scene.truth = pose;
   scene.source = painted_surface(surfaces.source);
   scene.target = painted_surface(surfaces.target);
-  write_file(settings.picture, png_bytes(alignment_pictures(scene, {{std::string(verdict(probability)) + ": probability " + fixed(probability, 2), pose}}, 1200).front()));
+  write_file(
+      settings.picture,
+      png_bytes(alignment_pictures(
+                    scene, {{std::string(verdict(probability)) + ": probability " + fixed(probability, 2), pose}}, 1200)
+                    .front()));
 }
 
 /// The files that were asked for, unless the pose is less probable than it has to be; what is distrusted is said.
-void write_outputs(const Settings& settings, const std::optional<Surfaces>& surfaces, const RigidTransform& pose, double probability) {
+void write_outputs(const Settings& settings, const std::optional<Surfaces>& surfaces, const RigidTransform& pose,
+                   double probability) {
   const std::vector<std::string> outputs = outputs_of(settings);
-  const bool is_asked = std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) { return !output.empty(); });
-  if (probability < settings.least_confidence) return say("note: the probability is below --least-confidence: no file was written");
+  const bool is_asked =
+      std::any_of(outputs.begin(), outputs.end(), [](const std::string& output) { return !output.empty(); });
+  if (probability < settings.least_confidence)
+    return say("note: the probability is below --least-confidence: no file was written");
   if (!is_asked) return;
   if (!settings.output.empty()) write_file(settings.output, transform_text(pose));
   if (!settings.apply.empty()) write_mesh(settings.apply, move_mesh(surfaces->source, pose));
@@ -162,8 +178,9 @@ int register_two(Settings settings) {
   for (const std::string& line : advice(pair.report)) say(line);
   std::optional<PoseErrors> errors;
   if (truth && !found.poses.empty()) {
-    const PairTruth right = surfaces ? pair_truth(surfaces->source, surfaces->target, *truth, pair.matches.resolution, 4)
-                                     : table_truth(pair.matches, *truth, 4);
+    const PairTruth right = surfaces
+                                ? pair_truth(surfaces->source, surfaces->target, *truth, pair.matches.resolution, 4)
+                                : table_truth(pair.matches, *truth, 4);
     errors = pose_errors(found.poses.front().target_from_source, right, pair.matches.resolution);
   }
   const ConfidenceModel& model = surfaces ? models.surfaces : models.table;
@@ -192,7 +209,8 @@ void add_register(CLI::App& app, Action& action) {
   command->add_option("--apply", settings->apply, "The source, moved onto the target: a PLY file")->type_name("FILE");
   command->add_option("--picture", settings->picture, "A picture of both under the pose")->type_name("FILE.png");
   command
-      ->add_option("--confidence", settings->confidence, "The model of 'corral calibrate' (default: of made scans, paper/README.md)")
+      ->add_option("--confidence", settings->confidence,
+                   "The model of 'corral calibrate' (default: of made scans, paper/README.md)")
       ->type_name("FILE");
   command
       ->add_option("--least-confidence", settings->least_confidence,
@@ -205,12 +223,17 @@ void add_register(CLI::App& app, Action& action) {
   add_drop_stray(*command, settings->drop_stray);
   add_set_option(*command, settings->set);
   command->footer(
-      "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole surfaces;\n"
-      "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from there, and poses\n"
+      "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole "
+      "surfaces;\n"
+      "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from "
+      "there, and poses\n"
       "are dropped that put points in front of what the other one saw.\n"
-      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 pr; a few are\n"
-      "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
-      "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other sensor saw.\n"
+      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 "
+      "pr; a few are\n"
+      "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of "
+      "the source that finds the\n"
+      "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other "
+      "sensor saw.\n"
       "Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
       "Examples:\n  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
       "  corral register --matches matches.csv -o pose.txt");

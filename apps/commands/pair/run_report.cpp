@@ -61,8 +61,8 @@ Json to_json(const PairRun& run, const RunSettings& settings) {
     methods.push_back(corral::to_json(run.records[i]));
     if (settings.dense) methods.back().emplace("dense", nullptr);  // where there was no pose to begin with
     const bool is_external = i >= run.groupers.size();
-    options[run.methods[i]] = corral::to_json(is_external ? run.externals[i - run.groupers.size()].options()
-                                                          : run.groupers[i].options);
+    options[run.methods[i]] =
+        corral::to_json(is_external ? run.externals[i - run.groupers.size()].options() : run.groupers[i].options);
   }
   for (const MethodRecord& bound : run.bounds) bounds.push_back(corral::to_json(bound));
   const std::optional<std::size_t> best = most_probable(run);

@@ -47,8 +47,8 @@ int give_advice(Settings settings) {
   Advice advice;
   {
     Progress progress(1);
-    advice = advise(dataset, settings.advice,
-                    [&](const std::string& step, double share) { progress.begin(step, share); });
+    advice =
+        advise(dataset, settings.advice, [&](const std::string& step, double share) { progress.begin(step, share); });
   }
   for (const std::string& failure : advice.facts.failures) say("warning: " + failure);
   if (settings.json)
@@ -63,11 +63,15 @@ int give_advice(Settings settings) {
 void add_advise(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand("advise", "Which grouper to use on these data, tried on a sample of them");
   auto settings = std::make_shared<Settings>();
-  command->add_option("data", settings->data, "A data set (a folder with dataset.toml), two surfaces, or tables of matches")
+  command
+      ->add_option("data", settings->data,
+                   "A data set (a folder with dataset.toml), two surfaces, or tables of matches")
       ->type_name("FILE")
       ->required();
-  command->add_option("--sample", settings->advice.sample, "Most pairs that are tried, evenly spaced")->capture_default_str();
-  command->add_option("--budget-ms", settings->advice.budget_ms, "Most time that the method may take on the median pair");
+  command->add_option("--sample", settings->advice.sample, "Most pairs that are tried, evenly spaced")
+      ->capture_default_str();
+  command->add_option("--budget-ms", settings->advice.budget_ms,
+                      "Most time that the method may take on the median pair");
   command->add_option("--prefer", settings->prefer, "What matters most")
       ->check(CLI::IsMember(std::vector<std::string>(kPreferences.begin(), kPreferences.end())))
       ->type_name("success|precision|recall")
@@ -76,8 +80,10 @@ void add_advise(CLI::App& app, Action& action) {
   add_match_options(*command, settings->advice.matching);
   add_set_option(*command, settings->set);
   command->footer(
-      "Every grouper, 'auto' and 'register' are run on the sample. A pair without a truth is judged by the pose of 'register' where\n"
-      "that is sure (probability of 0.9 or more), and left out where it is not. Some pairs are matched again with denser keypoints\n"
+      "Every grouper, 'auto' and 'register' are run on the sample. A pair without a truth is judged by the pose of "
+      "'register' where\n"
+      "that is sure (probability of 0.9 or more), and left out where it is not. Some pairs are matched again with "
+      "denser keypoints\n"
       "and with other detectors and descriptors, to see whether that helps more than another grouper.\n"
       "Examples:\n  corral advise my-scans\n  corral advise matches/*.csv --budget-ms 50 --prefer recall");
   command->callback([settings, &action] { action = [settings] { return give_advice(*settings); }; });

@@ -71,7 +71,8 @@ class PairsToJudge {
       if (is_new) dataset->second = &datasets_.emplace_back(find_dataset(study.call.data, unit.dataset, folder));
       const auto named = [&](const DatasetPair& pair) { return pair.name == unit.pair.name; };
       const auto pair = std::find_if(dataset->second->pairs.begin(), dataset->second->pairs.end(), named);
-      if (pair != dataset->second->pairs.end() && seen.insert(unit.dataset + "/" + pair->name + "\n" + matching_text(unit.matching)).second)
+      if (pair != dataset->second->pairs.end() &&
+          seen.insert(unit.dataset + "/" + pair->name + "\n" + matching_text(unit.matching)).second)
         add(*dataset->second, *pair, unit.matching);
     }
   }
@@ -165,7 +166,8 @@ int calibrate(const Settings& settings) {
   for (const std::string& folder : settings.tests) {
     const JudgedSet test = judge_sets({folder}, settings.threads);
     if (!test.surfaces.empty())
-      rows.push_back(row(folder, "surfaces", reliability(probabilities(models.surfaces, test.surfaces), test.surfaces)));
+      rows.push_back(
+          row(folder, "surfaces", reliability(probabilities(models.surfaces, test.surfaces), test.surfaces)));
     rows.push_back(row(folder, "table", reliability(probabilities(models.table, test.table), test.table)));
   }
   if (!settings.output.empty()) write_file(settings.output, confidence_text(models));
@@ -190,19 +192,26 @@ void add_calibrate(CLI::App& app, Action& action) {
   auto* command = app.add_subcommand(
       "calibrate", "How far the poses of 'corral register' can be trusted, learned from pairs with a truth");
   auto settings = std::make_shared<Settings>();
-  command->add_option("data", settings->data, "Studies, or data sets, whose pairs have truths; ten poses must be right and ten wrong, at least")
+  command
+      ->add_option("data", settings->data,
+                   "Studies, or data sets, whose pairs have truths; ten poses must be right and ten wrong, at least")
       ->type_name("STUDY")
       ->required();
-  command->add_option("--test", settings->tests, "Studies, or data sets, on which the model is then tested")->type_name("STUDY");
-  command->add_option("-o,--output", settings->output, "The model, for 'corral register --confidence'")->type_name("FILE");
+  command->add_option("--test", settings->tests, "Studies, or data sets, on which the model is then tested")
+      ->type_name("STUDY");
+  command->add_option("-o,--output", settings->output, "The model, for 'corral register --confidence'")
+      ->type_name("FILE");
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "The table as JSON");
   command->footer(
-      "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose is right if its\n"
-      "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the pairs of\n"
+      "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose "
+      "is right if its\n"
+      "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the "
+      "pairs of\n"
       "every object by a model of the others. The pairs of a study are matched as the study matched them, so that the\n"
       "model is one for its detector and descriptor. The study must have been made by this version of the program.\n"
-      "Examples:\n  corral calibrate runs/overlap runs/clutter -o confidence.toml\n  corral calibrate data/u3m data/u3or --test my-scans -o confidence.toml");
+      "Examples:\n  corral calibrate runs/overlap runs/clutter -o confidence.toml\n  corral calibrate data/u3m "
+      "data/u3or --test my-scans -o confidence.toml");
   command->callback([settings, &action] { action = [settings] { return calibrate(*settings); }; });
 }
 

@@ -57,11 +57,13 @@ void add_claims(CLI::App& app, Action& action) {
       ->type_name("STUDY")
       ->required();
   command->add_option("--claims", settings->claims, "Claims of your own, as paper/claims.toml")->type_name("FILE");
-  command->add_option("--prefix", settings->prefix, "Judge the methods whose names begin so, plain-gc in the place of gc")
+  command
+      ->add_option("--prefix", settings->prefix, "Judge the methods whose names begin so, plain-gc in the place of gc")
       ->type_name("TEXT");
   command->add_flag("--json", settings->json, "As JSON");
-  command->footer("Examples:\n  corral claims runs/all\n  corral claims runs/all runs/time --json\n"
-                  "  corral claims runs/plain --prefix plain-");
+  command->footer(
+      "Examples:\n  corral claims runs/all\n  corral claims runs/all runs/time --json\n"
+      "  corral claims runs/plain --prefix plain-");
   command->callback([settings, &action] { action = [settings] { return judge(*settings); }; });
 }
 

@@ -52,7 +52,8 @@ MethodFacts facts_of(const Grouper& method, bool with_checks) {
   MethodFacts facts{method.title, method.principle, "", "MIT", needs_of(configured.group), "", {}, {}, {}, false};
   facts.determinism = "the same rows for the same table; draws, if any, are seeded";
   if (configured.working_memory)
-    facts.memory_1k_mb = configured.working_memory(1000) / 1e6, facts.memory_10k_mb = configured.working_memory(10000) / 1e6;
+    facts.memory_1k_mb = configured.working_memory(1000) / 1e6,
+    facts.memory_10k_mb = configured.working_memory(10000) / 1e6;
   if (!with_checks) return facts;
   facts.is_checked = true;
   for (const ConformanceCheck& check : check_conformance(configured.group))
@@ -66,8 +67,16 @@ void add_submitted(const std::vector<std::string>& studies, FactsByMethod& facts
     std::error_code ignored;
     if (!std::filesystem::exists(study + "/method.toml", ignored)) continue;
     const Submission submission = read_submission(study);
-    facts[submission.name] = {submission.title, "", submission.url, submission.licence, submission.needs,
-                              submission.is_deterministic ? "deterministic, as its authors say" : "", {}, {}, {}, false};
+    facts[submission.name] = {submission.title,
+                              "",
+                              submission.url,
+                              submission.licence,
+                              submission.needs,
+                              submission.is_deterministic ? "deterministic, as its authors say" : "",
+                              {},
+                              {},
+                              {},
+                              false};
   }
 }
 
@@ -106,7 +115,9 @@ SubmittedMethod method_of(const Settings& settings) {
     if (plugin_file(method.facts.name).empty()) method.facts.name += "-packed";  // a name of Corral's own is taken
   } else {
     method.facts.name = externals.front().name;
-    method.group = [external = externals.front()](const CorrespondenceSet& matches) { return call_external(external, matches).found; };
+    method.group = [external = externals.front()](const CorrespondenceSet& matches) {
+      return call_external(external, matches).found;
+    };
   }
   method.facts.title = settings.title.empty() ? method.facts.name : settings.title;
   method.facts.url = settings.url, method.facts.licence = settings.licence;
@@ -124,7 +135,8 @@ int pack(const Settings& settings) {
   }
   for (const char* part : {"/labels", "/poses"}) make_folder(settings.output + part);
   write_files(files);
-  say(method.facts.name + ": " + std::to_string(dataset.pairs.size()) + " tables; the submission is in " + settings.output);
+  say(method.facts.name + ": " + std::to_string(dataset.pairs.size()) + " tables; the submission is in " +
+      settings.output);
   return kOk;
 }
 
@@ -172,17 +184,23 @@ void add_output(CLI::App& command, Settings& settings, const char* what) {
 }  // namespace
 
 void add_scoreboard(CLI::App& app, Action& action) {
-  auto* scoreboard = app.add_subcommand("scoreboard", "Methods on the same tables, as a site; and the answers of other programs to them");
+  auto* scoreboard = app.add_subcommand(
+      "scoreboard", "Methods on the same tables, as a site; and the answers of other programs to them");
   scoreboard->require_subcommand(1);
   auto settings = std::make_shared<Settings>();
   const auto does = [&](CLI::App* command, int (*act)(const Settings&)) {
     command->callback([settings, act, &action] { action = [settings, act] { return act(*settings); }; });
   };
   auto* write = scoreboard->add_subcommand("write", "A static site from studies");
-  write->add_option("studies", settings->folders, "Studies of corral evaluate and corral scoreboard add")->type_name("FOLDER")->required();
+  write->add_option("studies", settings->folders, "Studies of corral evaluate and corral scoreboard add")
+      ->type_name("FOLDER")
+      ->required();
   add_output(*write, *settings, "Folder of the site: open its index.html, or serve it");
-  write->add_flag("--no-checks", settings->no_checks, "Without putting the contract of groupers to each of ours, which takes a minute");
-  write->footer("Example:\n  corral evaluate scoreboard --data data/challenge -o runs/board\n  corral scoreboard write runs/board runs/theirs -o site");
+  write->add_flag("--no-checks", settings->no_checks,
+                  "Without putting the contract of groupers to each of ours, which takes a minute");
+  write->footer(
+      "Example:\n  corral evaluate scoreboard --data data/challenge -o runs/board\n  corral scoreboard write "
+      "runs/board runs/theirs -o site");
   does(write, write_site);
   auto* packing = scoreboard->add_subcommand("pack", "A method's answers to the tables of a data set, to be sent in");
   add_data(*packing, *settings);
@@ -194,9 +212,12 @@ void add_scoreboard(CLI::App& app, Action& action) {
   packing->add_option("--url", settings->url, "Where it is described");
   packing->add_option("--licence", settings->licence, "Its licence");
   packing->add_flag("--deterministic", settings->is_deterministic, "It gives the same answer every time");
-  packing->footer("The truths of the data set are not read.\nExample:\n  corral scoreboard pack --data data/challenge --external \"mine=python3 mine.py {matches} {group}\" -o mine");
+  packing->footer(
+      "The truths of the data set are not read.\nExample:\n  corral scoreboard pack --data data/challenge --external "
+      "\"mine=python3 mine.py {matches} {group}\" -o mine");
   does(packing, pack);
-  auto* checking = scoreboard->add_subcommand("check", "Whether a submission is complete and of the tables of the data set");
+  auto* checking =
+      scoreboard->add_subcommand("check", "Whether a submission is complete and of the tables of the data set");
   checking->add_option("submission", settings->folders, "Its folder")->type_name("FOLDER")->required()->expected(1);
   add_data(*checking, *settings);
   checking->footer("Example:\n  corral scoreboard check mine --data data/challenge");

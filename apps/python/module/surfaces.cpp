@@ -95,8 +95,10 @@ py::tuple match(const py::tuple& source, const py::tuple& target, const std::str
 py::dict as_dict(const Registration& found, const ConfidenceModel& model) {
   py::dict dict;
   py::list others;
-  for (std::size_t i = 1; i < found.poses.size(); ++i) others.append(or_none(std::optional(found.poses[i].target_from_source)));
-  dict["pose"] = found.poses.empty() ? py::object(py::none()) : or_none(std::optional(found.poses[0].target_from_source));
+  for (std::size_t i = 1; i < found.poses.size(); ++i)
+    others.append(or_none(std::optional(found.poses[i].target_from_source)));
+  dict["pose"] =
+      found.poses.empty() ? py::object(py::none()) : or_none(std::optional(found.poses[0].target_from_source));
   dict["others"] = others;
   dict["method"] = found.poses.empty() ? py::object(py::none()) : py::cast(found.poses[0].method);
   dict["confidence"] = found.signals ? py::cast(model.probability(*found.signals)) : py::object(py::none());
@@ -109,7 +111,8 @@ py::dict as_dict(const Registration& found, const ConfidenceModel& model) {
 }
 
 /// `source` and `target` may both be None: then the table alone decides.
-py::dict register_surfaces(const CorrespondenceSet& table, const py::object& source, const py::object& target, int threads) {
+py::dict register_surfaces(const CorrespondenceSet& table, const py::object& source, const py::object& target,
+                           int threads) {
   const bool has_surfaces = !source.is_none() && !target.is_none();
   std::optional<PairMeshes> meshes;
   if (has_surfaces) meshes = {mesh_of(source.cast<py::tuple>(), "source"), mesh_of(target.cast<py::tuple>(), "target")};

@@ -22,8 +22,8 @@ const std::map<std::string, MethodStyle> kKnown = {{"ss", {"SS", "#000000", 7, "
                                                    {"cv", {"CV", "#6699cc", 2, ""}},
                                                    {"frame-ransac", {"frame RANSAC", "#ddcc77", 3, "(6,3)"}},
                                                    {"auto", {"auto", "#994455", 5, "(10,3)"}},
-                                                 {"register", {"register", "#228833", 7, ""}},
-                                                 {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
+                                                   {"register", {"register", "#228833", 7, ""}},
+                                                   {"oracle", {"oracle", "#888888", 0, "(2,3)"}},
                                                    {"baseline", {"baseline", "#888888", 0, "(10,5)"}}};
 
 // For methods that are not among the groupers: colours that none of those has, and markers that none of the paper has.

@@ -17,7 +17,8 @@ using testing::Workplace;
 /// What a shell prints.
 std::string printed(const Workplace& place, const std::string& command) {
   const std::string file = place / "printed";
-  if (std::system(("cd '" + (place / ".") + "' && " + command + " > '" + file + "' 2>&1").c_str()) != 0) return "failed: " + place.text("printed");
+  if (std::system(("cd '" + (place / ".") + "' && " + command + " > '" + file + "' 2>&1").c_str()) != 0)
+    return "failed: " + place.text("printed");
   return place.text("printed");
 }
 
@@ -43,7 +44,8 @@ TEST(Manual, PagesAreRoffWithoutComplaint) {
   if (std::system("command -v groff > /dev/null") != 0) GTEST_SKIP() << "groff is not installed";
   const Workplace place;
   ASSERT_EQ(place.corral("manual -o share").status, 0);
-  EXPECT_EQ(printed(place, "for page in share/man/man1/*.1; do groff -ww -man -Tutf8 $page 2>&1 > /dev/null; done"), "");
+  EXPECT_EQ(printed(place, "for page in share/man/man1/*.1; do groff -ww -man -Tutf8 $page 2>&1 > /dev/null; done"),
+            "");
   EXPECT_THAT(printed(place, "groff -man -Tascii -P-c share/man/man1/corral-group.1"), HasSubstr("--method"));
 }
 
@@ -51,8 +53,8 @@ TEST(Manual, BashCompletesCommandsOptionsAndChoices) {
   const Workplace place;
   ASSERT_EQ(place.corral("manual -o share").status, 0);
   const auto completed = [&](const std::string& words, int count) {
-    return printed(place, "bash -c '. share/bash-completion/completions/corral; COMP_WORDS=(" + words + "); COMP_CWORD=" +
-                              std::to_string(count) + "; _corral; echo ${COMPREPLY[@]}'");
+    return printed(place, "bash -c '. share/bash-completion/completions/corral; COMP_WORDS=(" + words +
+                              "); COMP_CWORD=" + std::to_string(count) + "; _corral; echo ${COMPREPLY[@]}'");
   };
   EXPECT_EQ(completed("corral reg", 1), "register\n");
   EXPECT_EQ(completed("corral dataset ma", 2), "make\n");

@@ -144,7 +144,8 @@ TEST(MakeChallenge, IsADataSetOfItsTables) {
   RigidTransform elsewhere = real.truth;
   elsewhere.translation.array() += 1e6;
   place.put("real/t.txt", transform_text(elsewhere));
-  EXPECT_THAT(place.corral("dataset make challenge --tables real --sizes 100 --ratios 5 -o none").err, HasSubstr("pair p: "))
+  EXPECT_THAT(place.corral("dataset make challenge --tables real --sizes 100 --ratios 5 -o none").err,
+              HasSubstr("pair p: "))
       << "no correct match to draw from";
   place.put("real/pairs.csv", "pair,source,target,truth,matches\np,,,,m.csv\n");
   EXPECT_THAT(place.corral("dataset make challenge --tables real -o other").err,

@@ -15,7 +15,8 @@ using ::testing::HasSubstr;
 TEST(MakeTables, HasTheMatchesOfItsSurfacesWithTruthsAndAttributes) {
   const Workplace place;
   put_small_dataset(place);
-  const std::string make = "dataset make tables --data data/b3r -o tables --detector uniform --set uniform.spacing_pr=2.5";
+  const std::string make =
+      "dataset make tables --data data/b3r -o tables --detector uniform --set uniform.spacing_pr=2.5";
   ASSERT_EQ(place.corral(make).status, 0);
   const Dataset made = read_dataset(place / "tables"), set = read_dataset(place / "data/b3r");
   EXPECT_EQ(made.name, "b3r-tables");
@@ -24,8 +25,11 @@ TEST(MakeTables, HasTheMatchesOfItsSurfacesWithTruthsAndAttributes) {
   EXPECT_EQ(made.pairs[1].attributes, set.pairs[1].attributes);
   EXPECT_FALSE(made.pairs[1].has_surfaces());
   const std::string pair = set.pairs[1].name;
-  ASSERT_EQ(place.corral("match data/b3r/" + set.pairs[1].source + " data/b3r/" + set.pairs[1].target +
-                         " --resolution source --detector uniform --set uniform.spacing_pr=2.5 -o alone.csv").status, 0);
+  ASSERT_EQ(place
+                .corral("match data/b3r/" + set.pairs[1].source + " data/b3r/" + set.pairs[1].target +
+                        " --resolution source --detector uniform --set uniform.spacing_pr=2.5 -o alone.csv")
+                .status,
+            0);
   EXPECT_EQ(place.text("tables/matches/" + pair + ".csv"), place.text("alone.csv"));
   EXPECT_EQ(place.corral("dataset check tables").status, 0);
 

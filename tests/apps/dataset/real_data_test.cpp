@@ -14,8 +14,8 @@
 #include "io/disk/file.h"
 #include "io/mesh/mesh_file.h"
 #include "io/pose/transform_file.h"
-#include "kernel/surface/mesh/perturbation.h"
 #include "kernel/surface/mesh/half_edges.h"
+#include "kernel/surface/mesh/perturbation.h"
 #include "tests/io/scratch.h"
 
 namespace corral {

@@ -81,8 +81,10 @@ TEST_F(External, ReadsTheTableThatTheProgramsReadAndItsRowsInAnyForm) {
 TEST_F(External, TakesArraysAsNumpySavesThem) {
   put_text(folder_ / "rows", npy("(3,)", {1, 2, 5}));
   put_text(folder_ / "none", npy("(0,)", {}));
-  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group.npy")).found.selected, ElementsAre(1, 2, 5)) << "by a name";
-  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group")).found.selected, ElementsAre(1, 2, 5)) << "into a file";
+  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group.npy")).found.selected, ElementsAre(1, 2, 5))
+      << "by a name";
+  EXPECT_THAT(evaluate(method("cp " + (folder_ / "rows") + " $group")).found.selected, ElementsAre(1, 2, 5))
+      << "into a file";
   const MethodRecord none = evaluate(method("cp " + (folder_ / "none") + " $group.npy"));
   EXPECT_EQ(none.failure, "");
   EXPECT_THAT(none.found.selected, ::testing::IsEmpty());
@@ -127,7 +129,8 @@ TEST_F(External, IsKilledAtItsLimits) {
 }
 
 TEST_F(External, StartUpIsNoPartOfItsTime) {
-  const MethodRecord record = evaluate(method("sleep 0.4; [ $(wc -l < $matches) -lt 9 ] || sleep 0.4; echo 1 > $group"));
+  const MethodRecord record =
+      evaluate(method("sleep 0.4; [ $(wc -l < $matches) -lt 9 ] || sleep 0.4; echo 1 > $group"));
   EXPECT_GT(record.time_ms.value(), 200);
   EXPECT_LT(record.time_ms.value(), 700) << "the call takes 800 ms";
 }

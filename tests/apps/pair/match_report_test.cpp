@@ -43,7 +43,8 @@ TEST(StageReport, TellsWhatTheInspectionFound) {
   report.source.topology = Topology();
   report.source.topology->components = 3;
   report.source.topology->misoriented_faces = 4;
-  EXPECT_THAT(stage_report(report), HasSubstr("7 faces, normals towards the origin, 3 components, 4 misoriented faces, pr"));
+  EXPECT_THAT(stage_report(report),
+              HasSubstr("7 faces, normals towards the origin, 3 components, 4 misoriented faces, pr"));
   EXPECT_EQ(to_json(report)["source"]["topology"]["components"], 3);
 }
 

@@ -45,7 +45,8 @@ TEST(Plugins, TakePartInStudiesAndTheirFileCounts) {
   make_folder(place / "set");
   place.put("set/dataset.toml", "name = \"set\"\n");
   place.put("set/pairs.csv", "pair,source,target,truth,matches\none,,,../truth.txt,../matches.csv\n");
-  place.put("mine.toml", "name = \"mine\"\ndataset = \"set\"\nattribute = \"threshold_pr\"\nlevels = [4]\ngroupers = [\"gc\"]\n");
+  place.put("mine.toml",
+            "name = \"mine\"\ndataset = \"set\"\nattribute = \"threshold_pr\"\nlevels = [4]\ngroupers = [\"gc\"]\n");
   const auto outcome = place.corral("evaluate mine.toml --data set -o study --plugin " + kOdd);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(place.text("study/records.csv"), HasSubstr(",odd,"));

@@ -117,8 +117,8 @@ TEST_F(RegisterSurfaces, IsTheSameForAnyNumberOfThreads) {
 TEST(Register, IsOneCommandForTwoScans) {
   const Workplace place;
   place.put_pair();
-  const auto outcome =
-      place.corral("register model.ply copy.ply -o pose.txt --apply moved.ply --picture both.png --truth truth.txt --json");
+  const auto outcome = place.corral(
+      "register model.ply copy.ply -o pose.txt --apply moved.ply --picture both.png --truth truth.txt --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.json()["errors"]["registers"], true);
   EXPECT_TRUE(outcome.json()["signals"]["overlap"].is_number());
@@ -167,7 +167,9 @@ TEST(Register, ATableWillDoAndWhatIsWrongIsSaid) {
   EXPECT_EQ(place.corral("register a.ply").status, 2);
   EXPECT_EQ(place.corral("register --matches matches.csv --apply moved.ply").status, 2);
   EXPECT_EQ(place.corral("register --matches matches.csv -o matches.csv").status, 2);
-  place.put("two.csv", "# corral matches 1\n# resolution 1\nsource_x,source_y,source_z,target_x,target_y,target_z\n1,2,3,4,5,6\n1,2,4,5,6,7\n");
+  place.put("two.csv",
+            "# corral matches 1\n# resolution "
+            "1\nsource_x,source_y,source_z,target_x,target_y,target_z\n1,2,3,4,5,6\n1,2,4,5,6,7\n");
   const auto none = place.corral("register --matches two.csv -o none.txt");
   EXPECT_EQ(none.status, 4);
   EXPECT_THAT(none.out, ::testing::HasSubstr("no pose"));

@@ -43,8 +43,10 @@ TEST(FoundStatements, CompareSuccessOnTheSamePairs) {
   EXPECT_LT(found[0].low, 0.3);
   EXPECT_GT(found[0].high, 0.3);
   EXPECT_EQ(found[1].text, "All correct matches register more pairs than the best grouper, ransac: 1.00 against 0.90");
-  EXPECT_EQ(found[2].text, "From 2 to 5 % of correct matches on a grouper registers half of the pairs; there ransac registers most, before gc: "
-                           "0.80 against 0.10");
+  EXPECT_EQ(found[2].text,
+            "From 2 to 5 % of correct matches on a grouper registers half of the pairs; there ransac registers most, "
+            "before gc: "
+            "0.80 against 0.10");
   EXPECT_EQ(found[2].pairs, 20);
   EXPECT_THAT(found[3].text, HasSubstr("more pairs than gc, the most precise (0.90): 0.90 against 0.55"));
   EXPECT_THAT(found[4].text, HasSubstr("more pairs than ss, that with the best recall (0.95): 0.90 against 0.10"));
@@ -53,12 +55,13 @@ TEST(FoundStatements, CompareSuccessOnTheSamePairs) {
 
 TEST(FoundStatements, AnOppositeIsSaidAndNothingIsLeftOut) {
   const std::vector<int> correct(12, 60);
-  const std::vector<FoundStatement> found =
-      found_in(successes_study("e", correct, {{"gc", {first_of(2, 12), first_of(11, 12)}}, {"oracle", {first_of(2, 12)}}}));
+  const std::vector<FoundStatement> found = found_in(
+      successes_study("e", correct, {{"gc", {first_of(2, 12), first_of(11, 12)}}, {"oracle", {first_of(2, 12)}}}));
   ASSERT_EQ(found.size(), 1U) << "the oracle registers as many, no grouper half of them";
   EXPECT_LT(found[0].high, 0);
   EXPECT_FALSE(found[0].is_clear());
-  EXPECT_THAT(found_in(successes_study("e", {60, 60}, {{"gc", {{true, true}, {false, false}}}})), IsEmpty()) << "two pairs";
+  EXPECT_THAT(found_in(successes_study("e", {60, 60}, {{"gc", {{true, true}, {false, false}}}})), IsEmpty())
+      << "two pairs";
 }
 
 }  // namespace

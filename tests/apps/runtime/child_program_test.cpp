@@ -14,10 +14,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 using testing::io_error_of;
+using ::testing::IsEmpty;
 using testing::ScratchFolder;
+using ::testing::SizeIs;
 using testing::text_of;
 
 ChildEnd shell(const std::string& script, double seconds = 30, std::uint64_t memory = 0) {

@@ -44,7 +44,8 @@ StudyFolder study(const std::map<std::string, std::vector<bool>>& methods, const
 }
 
 TEST(Board, RanksBySuccessAndEqualsShareARank) {
-  const std::vector<StudyFolder> runs = {study({{"gc", {true, true, false, true}}, {"ss", {false, false, false, true}}, {"st", {true, false, true, true}}})};
+  const std::vector<StudyFolder> runs = {study(
+      {{"gc", {true, true, false, true}}, {"ss", {false, false, false, true}}, {"st", {true, false, true, true}}})};
   const std::vector<Board> boards = make_boards(tables_of(runs));
   ASSERT_EQ(boards.size(), 1U);
   EXPECT_EQ(boards[0].tables, 4);
@@ -64,7 +65,8 @@ TEST(Board, RanksBySuccessAndEqualsShareARank) {
 }
 
 TEST(Board, StudiesOfTheSamePairsShareIt) {
-  const std::vector<StudyFolder> runs = {study({{"gc", {true, true, true, true}}}), study({{"mine", {true, true, false, true}}})};
+  const std::vector<StudyFolder> runs = {study({{"gc", {true, true, true, true}}}),
+                                         study({{"mine", {true, true, false, true}}})};
   const std::vector<Board> boards = make_boards(tables_of(runs));
   ASSERT_EQ(boards.size(), 1U);
   EXPECT_EQ(boards[0].rows.size(), 3U);
@@ -90,8 +92,10 @@ TEST(Board, NamesAreNoMarkup) {
 TEST(Board, AWeakSpotIsNamed) {
   const std::vector<StudyFolder> runs = {study({{"gc", {true, true, true, true}}, {"ss", {true, false, false, true}}})};
   std::map<std::string, std::string> pages;
-  for (const FileContent& file : scoreboard_site(make_boards(tables_of(runs)), {}, "site")) pages[file.path] = file.content;
-  EXPECT_THAT(pages["site/method-ss.html"], HasSubstr("On tables with 2 to 5 % correct matches it registers 0.00, gc 1.00 (2 tables)."));
+  for (const FileContent& file : scoreboard_site(make_boards(tables_of(runs)), {}, "site"))
+    pages[file.path] = file.content;
+  EXPECT_THAT(pages["site/method-ss.html"],
+              HasSubstr("On tables with 2 to 5 % correct matches it registers 0.00, gc 1.00 (2 tables)."));
   EXPECT_THAT(pages["site/method-gc.html"], HasSubstr("No method is ahead of it"));
 }
 

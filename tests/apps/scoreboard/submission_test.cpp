@@ -11,8 +11,8 @@ namespace corral {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::lines_in;
+using ::testing::Not;
 using testing::Workplace;
 
 /// A data set of two tables with truths.
@@ -20,20 +20,25 @@ void put_set(const Workplace& place) {
   place.put_problem();
   make_folder(place / "set");
   place.put("set/dataset.toml", "name = \"two\"\n");
-  place.put("set/pairs.csv", "pair,source,target,truth,matches\none,,,../truth.txt,../matches.csv\nother,,,../truth.txt,../matches.csv\n");
+  place.put(
+      "set/pairs.csv",
+      "pair,source,target,truth,matches\none,,,../truth.txt,../matches.csv\nother,,,../truth.txt,../matches.csv\n");
 }
 
 /// Selects every row.
 void put_program(const Workplace& place, const std::string& name) {
-  place.put(name, "import sys\nrows = [line for line in open(sys.argv[1]) if not line.startswith('#')][1:]\n"
-                  "open(sys.argv[2], 'w').write('\\n'.join('1' for _ in rows) + '\\n')\n");
+  place.put(name,
+            "import sys\nrows = [line for line in open(sys.argv[1]) if not line.startswith('#')][1:]\n"
+            "open(sys.argv[2], 'w').write('\\n'.join('1' for _ in rows) + '\\n')\n");
 }
 
 TEST(Scoreboard, FromAScriptToTheSite) {
   const Workplace place;
   put_set(place);
   put_program(place, "mine.py");
-  auto packed = place.corral("scoreboard pack --data set --external \"mine=python3 mine.py {matches} {group}\" --licence MIT --deterministic -o sent");
+  auto packed = place.corral(
+      "scoreboard pack --data set --external \"mine=python3 mine.py {matches} {group}\" --licence MIT --deterministic "
+      "-o sent");
   ASSERT_EQ(packed.status, 0) << packed.err;
   EXPECT_THAT(place.text("sent/method.toml"), HasSubstr("deterministic = true"));
   EXPECT_EQ(lines_in(place.text("sent/tables.csv")), 3U);
@@ -81,7 +86,8 @@ TEST(Scoreboard, OneMethodIsPacked) {
   const Workplace place;
   put_set(place);
   EXPECT_EQ(place.corral("scoreboard pack --data set -o sent").status, 2);
-  EXPECT_EQ(place.corral("scoreboard pack --data set --method gc --external \"x=y {matches} {group}\" -o sent").status, 2);
+  EXPECT_EQ(place.corral("scoreboard pack --data set --method gc --external \"x=y {matches} {group}\" -o sent").status,
+            2);
   place.put("set/pairs.csv", "pair,source,target,truth\none,a.ply,b.ply,\n");
   EXPECT_EQ(place.corral("scoreboard pack --data set --method gc -o sent").status, 3);
 }

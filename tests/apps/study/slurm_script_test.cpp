@@ -57,20 +57,20 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
   jobs.shards = 50;
   jobs.time = "90";
   jobs.memory = "2G";
-  EXPECT_THAT(shards_script(jobs), ::testing::StartsWith(
-            "#!/bin/sh\n"
-            "#SBATCH --job-name=corral\n"
-            "#SBATCH --output=shard-%a.log\n"
-            "#SBATCH --open-mode=append\n"
-            "#SBATCH --requeue\n"
-            "#SBATCH --ntasks=1\n"
-            "#SBATCH --array=1-50\n"
-            "#SBATCH --cpus-per-task=1\n"
-            "#SBATCH --time=90\n"
-            "#SBATCH --mem=2G\n"
-            "#SBATCH --signal=B:TERM@60\n"
-            "/bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\" &\n"
-            "shard=$!\n"));
+  EXPECT_THAT(shards_script(jobs),
+              ::testing::StartsWith("#!/bin/sh\n"
+                                    "#SBATCH --job-name=corral\n"
+                                    "#SBATCH --output=shard-%a.log\n"
+                                    "#SBATCH --open-mode=append\n"
+                                    "#SBATCH --requeue\n"
+                                    "#SBATCH --ntasks=1\n"
+                                    "#SBATCH --array=1-50\n"
+                                    "#SBATCH --cpus-per-task=1\n"
+                                    "#SBATCH --time=90\n"
+                                    "#SBATCH --mem=2G\n"
+                                    "#SBATCH --signal=B:TERM@60\n"
+                                    "/bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\" &\n"
+                                    "shard=$!\n"));
   jobs.at_once = 20;
   jobs.processors = 4;
   jobs.partition = "short";

@@ -85,13 +85,13 @@ TEST(Specification, LabelsBinsAsIntervals) {
 }
 
 TEST(Specification, TheProgramCarriesThePapersExperiments) {
-  EXPECT_THAT(built_in_experiments(),
-              ElementsAre("clutter", "cranfield-fpfh", "cranfield-shot", "cranfield", "density", "detectors-fpfh",
-                          "detectors", "extended-clutter", "extended-inlier-ratio", "extended-noise", "extended-overlap",
-                          "extended-size", "extended-time", "inlier-ratio", "matches", "noise", "occlusion", "overlap",
-                          "peers-heaps", "peers-views", "scoreboard", "size", "threshold", "time", "tuned-clutter",
-                          "tuned-inlier-ratio", "tuned-noise", "tuned-overlap", "tuning-consistency",
-                          "tuning-spectral"));
+  EXPECT_THAT(
+      built_in_experiments(),
+      ElementsAre("clutter", "cranfield-fpfh", "cranfield-shot", "cranfield", "density", "detectors-fpfh", "detectors",
+                  "extended-clutter", "extended-inlier-ratio", "extended-noise", "extended-overlap", "extended-size",
+                  "extended-time", "inlier-ratio", "matches", "noise", "occlusion", "overlap", "peers-heaps",
+                  "peers-views", "scoreboard", "size", "threshold", "time", "tuned-clutter", "tuned-inlier-ratio",
+                  "tuned-noise", "tuned-overlap", "tuning-consistency", "tuning-spectral"));
   std::string figures;
   for (const std::string& name : built_in_experiments()) {
     const Experiment experiment = read_experiment(name);

@@ -103,7 +103,8 @@ TEST_F(WorkListTest, ExperimentsShareTheirUnits) {
     EXPECT_EQ(unit.tasks.size(), 7u);  // each method once, not once for each experiment or threshold
     EXPECT_EQ(unit.thresholds_pr.size(), 10u);
     EXPECT_EQ(unit.selections.size(), 1u);
-    EXPECT_EQ(unit.selections.begin()->first, "selections/u3or/3pr/" + unit.pair.name + ".csv") << "the paper's setting";
+    EXPECT_EQ(unit.selections.begin()->first, "selections/u3or/3pr/" + unit.pair.name + ".csv")
+        << "the paper's setting";
     EXPECT_FALSE(unit.shares_source);  // pr is the mean of each pair's two
   }
 }

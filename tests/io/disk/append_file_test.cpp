@@ -128,7 +128,8 @@ TEST(AppendFile, NothingIsAddedBehindWhatCouldNotBeUndone) {
   EXPECT_EQ(io_error_of([&] { file->append("second\n"); }),
             file->path() + ": cannot be written (No space left on device)");
   ASSERT_EQ(::dup2(whole, number), number);
-  EXPECT_THAT(io_error_of([&] { file->append("third\n"); }), StartsWith(file->path() + ", byte 6: cannot be appended to"));
+  EXPECT_THAT(io_error_of([&] { file->append("third\n"); }),
+              StartsWith(file->path() + ", byte 6: cannot be appended to"));
   EXPECT_EQ(text_of(folder / "journal"), "first\n");
   ::close(whole), ::close(full);
 }

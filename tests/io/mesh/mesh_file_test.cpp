@@ -63,7 +63,8 @@ TEST(MeshFile, KnowsTheEndingsThatItReads) {
   for (const char* name : {"a.ply", "x/a.OFF", "a.obj", "a.stl", "a.xyz", "a.pts", "a.b.pcd", "a.ply.gz"})
     EXPECT_TRUE(is_mesh_name(name));
   for (const char* name : {"ply", "a.txt", "a.csv", "a.gz", "a.xf", ""}) EXPECT_FALSE(is_mesh_name(name)) << name;
-  EXPECT_EQ(mesh_endings(), ".ply, .off, .obj, .stl, .pcd, .xyz, .pts, .asc, .txt, .csv or .bin (also with .gz behind)");
+  EXPECT_EQ(mesh_endings(),
+            ".ply, .off, .obj, .stl, .pcd, .xyz, .pts, .asc, .txt, .csv or .bin (also with .gz behind)");
 }
 
 TEST(MeshFile, ReadsBackWhatItWrote) {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "grouping/columns/otsu.h"
 #include "grouping/geometric_consistency.h"
 #include "grouping/hough_voting.h"
 #include "grouping/nearest_neighbor_ratio.h"
-#include "grouping/columns/otsu.h"
 #include "grouping/ransac.h"
 #include "grouping/search_of_inliers.h"
 #include "grouping/similarity_score.h"

@@ -40,7 +40,8 @@ Triangles sound_triangles(const Mesh& mesh, Topology& topology) {
   return triangles;
 }
 
-using Edges = std::map<std::pair<int, int>, std::vector<std::pair<int, bool>>>;  // triangles, and whether they run upwards
+using Edges =
+    std::map<std::pair<int, int>, std::vector<std::pair<int, bool>>>;  // triangles, and whether they run upwards
 
 Edges edges_of(const Triangles& triangles) {
   Edges edges;

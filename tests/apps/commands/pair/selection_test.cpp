@@ -78,7 +78,8 @@ TEST(Group, AnotherProgramIsCalled) {
   EXPECT_EQ(json[2]["selected"], 60);
   EXPECT_GT(json[2]["start_up_ms"], 0);
   EXPECT_EQ(place.text("all/group_mine.csv"), place.text("group.csv"));
-  const Outcome run = place.corral("run --matches matches.csv --truth truth.txt --methods gc" + mine + " -o run --json");
+  const Outcome run =
+      place.corral("run --matches matches.csv --truth truth.txt --methods gc" + mine + " -o run --json");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.json()["methods"][1]["precision"], 1);
   EXPECT_THAT(run.json()["details"]["options"]["mine"]["command"].get<std::string>(), HasSubstr("{group}"));

@@ -58,7 +58,8 @@ TEST(Calibrate, OfAStudyTakesItsPairsAsItMatchedThem) {
   place.put("e.toml", "name = \"e\"\ndataset = \"tables\"\nattribute = \"threshold_pr\"\nlevels = [4, 5]\n");
   const auto made = place.corral("evaluate e.toml --data tables -o study");
   ASSERT_EQ(made.status, 0) << made.err;
-  const auto of_set = place.corral("calibrate tables -o of-set.toml --json"), of_study = place.corral("calibrate study -o of-study.toml --json");
+  const auto of_set = place.corral("calibrate tables -o of-set.toml --json"),
+             of_study = place.corral("calibrate study -o of-study.toml --json");
   ASSERT_EQ(of_study.status, 0) << of_study.err;
   EXPECT_EQ(of_study.json(), of_set.json());
   EXPECT_EQ(place.text("of-study.toml"), place.text("of-set.toml"));

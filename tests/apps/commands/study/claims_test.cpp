@@ -14,7 +14,8 @@ using testing::Workplace;
 
 /// Times by which 3DHV takes `hough` of the time of GC.
 void add_times(StudyFolder& run, double hough) {
-  testing::add_times(run, {1500, 3000}, [&](const std::string& method, double) { return method == "hough" ? hough : 1.0; });
+  testing::add_times(run, {1500, 3000},
+                     [&](const std::string& method, double) { return method == "hough" ? hough : 1.0; });
 }
 
 std::string verdict_of(const Workplace& place, const std::string& claim, const std::string& options) {
@@ -35,7 +36,8 @@ TEST(Claims, OfAPrefixAreThoseOfTheMethodsWithIt) {
     record.method = "plain-" + record.method;
     run.records.push_back(record);
   }
-  for (const std::string& method : plain.experiments[0].methods) run.experiments[0].methods.push_back("plain-" + method);
+  for (const std::string& method : plain.experiments[0].methods)
+    run.experiments[0].methods.push_back("plain-" + method);
   run.folder = place / "run";
   testing::write_run(run);
   EXPECT_EQ(verdict_of(place, "C55", ""), "holds");

@@ -111,8 +111,7 @@ TEST_F(ForeignMethods, NoAnswerIsAFailureOfThatMethodOnThatPair) {
   const Outcome outcome = evaluate("-o run");
   EXPECT_EQ(outcome.status, 4);
   EXPECT_THAT(outcome.err, HasSubstr("5 pairs, 3 failed"));
-  EXPECT_EQ(to_text(record("run", "p2", "copy").status),
-            "failed: copy/p2.txt: does not exist: no answer to this pair");
+  EXPECT_EQ(to_text(record("run", "p2", "copy").status), "failed: copy/p2.txt: does not exist: no answer to this pair");
   EXPECT_THAT(to_text(record("run", "p3", "copy").status),
               HasSubstr("copy/p3.txt, line 3: expected a label 0 or 1 for each of 120 matches"));
   EXPECT_THAT(to_text(record("run", "p4", "pose").status), HasSubstr("failed: pose/p4.txt"));

@@ -61,8 +61,8 @@ void put_run(const Workplace& place, const std::string& run = "run", const std::
   const double precisions[] = {0.25, 0.75, 0, 1, 1, 1, 0.75, 1, 0.25};
   for (std::size_t i = 0; i < records.size(); ++i) records[i].selected = 4, records[i].precision = precisions[i];
   records[2].selected = 0, records[2].precision = std::nullopt;  // empty
-  records[4].true_matches = 2;                            // excluded
-  records[5].matches.reset();                             // failed
+  records[4].true_matches = 2;                                   // excluded
+  records[5].matches.reset();                                    // failed
   records[8].level = "0.2";
   records.insert(records.end(), more.begin(), more.end());
   std::string text = csv_line(record_columns());

@@ -67,11 +67,13 @@ TEST_F(Workflow, EveryEngineGivesThePlugInsOfAStudyToItsMerge) {
   const std::map<std::string, std::string> expected = lasting_files(place_, "whole");
   EXPECT_THAT(expected.at("records.csv"), ::testing::HasSubstr(",lengths,"));
   if (has("parallel")) {
-    EXPECT_EQ(run(kSource + "/apps/workflow/parallel 2 'of parallel' 'a test.toml' --data data " + plugin), 0) << place_.text("log");
+    EXPECT_EQ(run(kSource + "/apps/workflow/parallel 2 'of parallel' 'a test.toml' --data data " + plugin), 0)
+        << place_.text("log");
     EXPECT_EQ(lasting_files(place_, "of parallel"), expected);
   }
   if (has("snakemake")) {
-    EXPECT_EQ(run("snakemake -s " + kSource + "/apps/workflow/Snakefile --cores 2 --config program=" CORRAL_PROGRAM
+    EXPECT_EQ(run("snakemake -s " + kSource +
+                  "/apps/workflow/Snakefile --cores 2 --config program=" CORRAL_PROGRAM
                   " 'experiments=[\"a test.toml\"]' data=data 'study=of snakemake' shards=2 'options=[\"--plugin\", "
                   "\"" CORRAL_LENGTHS_PLUGIN "\"]'"),
               0)

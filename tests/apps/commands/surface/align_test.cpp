@@ -54,8 +54,8 @@ TEST(Align, WritesWhereEachViewIsAndWhatSpeaksForIt) {
   const auto report = outcome.json();
   EXPECT_THAT(testing::keys_of(report), ElementsAre("converged", "pairs", "views"));
   EXPECT_THAT(testing::keys_of(report["pairs"][0]),
-              ElementsAre("closed_loops", "confidence", "error_pr", "in_front", "loops", "median_pr", "origin", "overlap", "source",
-                          "target", "target_from_source", "verdict"));
+              ElementsAre("closed_loops", "confidence", "error_pr", "in_front", "loops", "median_pr", "origin",
+                          "overlap", "source", "target", "target_from_source", "verdict"));
   ASSERT_EQ(report["views"].size(), 3U);
   EXPECT_EQ(report["views"][2]["name"], "c");
   const RigidTransform c = read_transform(place / "out/c.xf"), truth = object.between(2, 0);

@@ -11,7 +11,8 @@ TEST_F(PageInBrowser, WhatToUseNamesTheGroupersOfEveryDataSet) {
   EXPECT_EQ(js("choices.charts.length"), 1);
   EXPECT_EQ(js("choices.charts[0].data.datasets.length"), 3 + 1) << "the groupers and the line that joins the front";
   EXPECT_EQ(js("document.querySelectorAll('#choice-sets h3').length"), 1);
-  const Json rows = js("[...document.querySelectorAll('#choice-sets .panels tbody tr')].map(r => r.cells[0].textContent)");
+  const Json rows =
+      js("[...document.querySelectorAll('#choice-sets .panels tbody tr')].map(r => r.cells[0].textContent)");
   EXPECT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows.back(), "all correct matches");
   EXPECT_EQ(js("document.querySelectorAll('#choice-sets .cells tbody tr').length"),

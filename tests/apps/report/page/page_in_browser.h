@@ -95,8 +95,8 @@ class PageInBrowser : public ::testing::Test {
   /// The middle of what a selector finds, scrolled into the window.
   std::pair<double, double> place_of(const std::string& selector) {
     const nlohmann::json place = js("(() => { const e = document.querySelector('" + selector +
-                          "'); e.scrollIntoView({behavior: 'instant', block: 'center'}); const r = "
-                          "e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()");
+                                    "'); e.scrollIntoView({behavior: 'instant', block: 'center'}); const r = "
+                                    "e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()");
     return {place[0], place[1]};
   }
   void click(const std::string& selector) {

@@ -69,18 +69,22 @@ class ScoreboardInBrowser : public ::testing::Test {
   /// The names in a column, from the top; of the methods if none is named.
   Json order() { return js("[...document.querySelectorAll('tbody tr')].map(r => r.cells[1].textContent)"); }
   std::string sorted_by() {
-    return js("[...document.querySelectorAll('th[aria-sort]')].filter(h => h.ariaSort !== 'none').map(h => h.textContent + ' ' + "
-              "h.ariaSort).join()");
+    return js(
+        "[...document.querySelectorAll('th[aria-sort]')].filter(h => h.ariaSort !== 'none').map(h => h.textContent + ' "
+        "' + "
+        "h.ariaSort).join()");
   }
   void choose(const std::string& header) {
-    const Json place = js("(() => { const b = [...document.querySelectorAll('th button')].find(b => b.textContent === '" + header +
-                          "'); b.scrollIntoView({behavior: 'instant', inline: 'center'}); const r = b.getBoundingClientRect(); "
-                          "return [r.x + r.width / 2, r.y + r.height / 2]; })()");
+    const Json place =
+        js("(() => { const b = [...document.querySelectorAll('th button')].find(b => b.textContent === '" + header +
+           "'); b.scrollIntoView({behavior: 'instant', inline: 'center'}); const r = b.getBoundingClientRect(); "
+           "return [r.x + r.width / 2, r.y + r.height / 2]; })()");
     browser_->click(place[0], place[1]);
   }
   void expect_fits() {
     EXPECT_LE(js("document.documentElement.scrollWidth"), js("document.documentElement.clientWidth"));
-    EXPECT_EQ(js("[...document.querySelectorAll('h1, p, dd')].filter(e => e.scrollWidth > e.clientWidth + 1).length"), 0);
+    EXPECT_EQ(js("[...document.querySelectorAll('h1, p, dd')].filter(e => e.scrollWidth > e.clientWidth + 1).length"),
+              0);
   }
 
   static std::unique_ptr<Browser> browser_;
@@ -96,7 +100,8 @@ TEST_F(ScoreboardInBrowser, ColumnsAreSortedByTheMouse) {
   EXPECT_EQ(order(), Json({"all correct matches", "method0", "method1", "method2", "method3"}));
   choose("success");
   EXPECT_EQ(sorted_by(), "success ascending");
-  EXPECT_EQ(order(), Json({"method2", "method1", "method0", "all correct matches", "method3"})) << "without a share: last";
+  EXPECT_EQ(order(), Json({"method2", "method1", "method0", "all correct matches", "method3"}))
+      << "without a share: last";
   choose("time ms");
   EXPECT_EQ(order().back(), "method3");
   choose("method");
@@ -116,7 +121,11 @@ TEST_F(ScoreboardInBrowser, KeysAloneReachEverything) {
   };
   const auto enter = [&](const std::string& page) {
     browser_->press("Enter");
-    for (int wait = 0; wait < 200 && js("document.readyState === 'complete' ? location.pathname : ''").get<std::string>().find(page) == std::string::npos; ++wait)
+    for (int wait = 0;
+         wait < 200 &&
+         js("document.readyState === 'complete' ? location.pathname : ''").get<std::string>().find(page) ==
+             std::string::npos;
+         ++wait)
       js("new Promise(r => setTimeout(r, 10))");
     EXPECT_THAT(js("location.pathname").get<std::string>(), HasSubstr(page));
   };
@@ -134,7 +143,8 @@ TEST_F(ScoreboardInBrowser, KeysAloneReachEverything) {
 TEST_F(ScoreboardInBrowser, NarrowWindowsScrollTheTableAlone) {
   for (const int width : {1200, 360}) {
     browser_->resize(width, 700);
-    for (const char* page : {"index.html", "noise-set1.html", "noise-set0.html", "method-method0.html", "method-method3.html"}) {
+    for (const char* page :
+         {"index.html", "noise-set1.html", "noise-set0.html", "method-method0.html", "method-method3.html"}) {
       SCOPED_TRACE(page + std::string(" at ") + std::to_string(width));
       open(page);
       expect_fits();
