@@ -59,7 +59,7 @@ Indices connected_first(const CorrespondenceSet& matches, const TurboregOptions&
   return rows;
 }
 
-constexpr double kEdgesOfBlock = 4e6;  ///< that are counted together
+constexpr double kEdgesPerRow = 16;  ///< of all rows, so many edges are counted together at least
 
 /// Room for the first edges and for candidates.
 std::size_t pivots_held(double rows, int pivots) {
@@ -102,7 +102,7 @@ class Triangles {
       BitGraph::NodeBlock block{i / 64, std::min(i / 64 + BitGraph::kBlock, graph_.words()), 0, {}, {}};
       block.nodes.assign(BitGraph::kBlock, 0);
       double most_edges = 0;
-      for (; i < std::min(64 * block.last, end) && most_edges < kEdgesOfBlock; ++i) {
+      for (; i < std::min(64 * block.last, end) && most_edges < kEdgesPerRow * graph_.size(); ++i) {
         while (end > i && common_.degree(end - 1) <= fewest) --end;
         if (common_.degree(i) <= fewest) continue;
         const int first = i / 64, last = (end + 63) / 64;
@@ -226,7 +226,7 @@ double working_memory(int matches, const TurboregOptions& options) {
   const double pivots = static_cast<double>(pivots_held(matches, options.pivots));
   // Names, sampled degrees and two lists of counts; strips of the graph while it is made, then counts of neighbours.
   return 2 * canonical_order_memory(matches) + BitGraph::memory(matches) + CommonNeighbors::memory(matches) +
-         80.0 * matches + BitGraph::memory_of_block(matches, kEdgesOfBlock + matches) + pivots * sizeof(Pivot) +
+         80.0 * matches + BitGraph::memory_of_block(matches, (kEdgesPerRow + 1) * matches) + pivots * sizeof(Pivot) +
          std::min(pivots, 1.0 * options.pivots) * kThirds * sizeof(Triangle) +
          PoseChoice::memory(matches, std::min(pivots, 1.0 * options.pivots) * kThirds, rule_of(options));
 }

@@ -43,7 +43,8 @@ class BitGraph {
                        kStrip = 128;  ///< words of a range, and of a strip of its rows, which fits into the cache
   /// Bytes for the counts of a block of at most so many edges.
   static double memory_of_block(int nodes, double edges) {
-    return 4 * std::min(edges, 64.0 * kBlock * nodes) + 64.0 * kBlock * kStrip * sizeof(Word) + nodes;
+    const double strip = std::min(64.0 * kBlock, 1.0 * nodes) * std::min(1.0 * kStrip, nodes / 64.0 + 1) * sizeof(Word);
+    return 4 * std::min(edges, nodes * (nodes - 1.0) / 2) + strip + nodes;
   }
 
   /// counts[k] = the number of common neighbours of `node` and others[k].

@@ -103,8 +103,8 @@ PointSpacing reference_spacing(const Points& points) {
         std::replace(part.begin(), part.end(), std::max(part[i], part[j]), std::min(part[i], part[j]));
   const auto size = [&](std::size_t i) { return std::count(part.begin(), part.end(), part[i]); };
   const auto are_few = [&](std::ptrdiff_t strays) { return 50 * strays <= static_cast<std::ptrdiff_t>(places.size()); };
-  std::ptrdiff_t alone = 0, together = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) alone += size(i) == 1, together += size(i) <= 3;
+  std::ptrdiff_t together = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) together += size(i) <= 3;
   const auto is_stray = [&](std::size_t i) { return size(i) == 1 || (are_few(together) && size(i) <= 3); };
   double sum = 0;
   std::ptrdiff_t others = 0;
