@@ -51,6 +51,7 @@ TEST(Seeds, OfFiles) { feed_seeds(fuzz::file_targets()); }
 TEST(Seeds, OfStudies) { feed_seeds(fuzz::study_targets()); }
 TEST(Seeds, OfGroupers) { feed_seeds(fuzz::grouper_targets()); }
 TEST(Seeds, OfSurfaces) { feed_seeds(fuzz::surface_targets()); }
+TEST(Seeds, OfViews) { feed_seeds(fuzz::view_targets()); }
 
 }  // namespace
 }  // namespace corral

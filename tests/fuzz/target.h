@@ -23,6 +23,7 @@ const std::vector<Target>& file_targets();
 const std::vector<Target>& study_targets();
 const std::vector<Target>& grouper_targets();
 const std::vector<Target>& surface_targets();
+const std::vector<Target>& view_targets();
 
 inline void require(bool holds, const char* promise) {
   if (holds) return;
