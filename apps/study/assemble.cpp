@@ -94,12 +94,11 @@ void add_rows(const WorkList& list, const PlacedSample& placed, const UnitResult
   }
   if (result.failure.empty() && !result.has_truth) return;
   if (!result.failure.empty() && unit.pair.truth.empty()) return;
-  for (const char* bound : {"oracle", "baseline"}) {
+  for (const bool is_oracle : {true, false}) {
     StudyRecord record = common;
-    record.method = bound;
+    record.method = is_oracle ? "oracle" : "baseline";
     if (result.failure.empty())
-      record = scored(std::move(record), record.method == "baseline" ? *result.baseline : result.oracles[threshold],
-                      threshold);
+      record = scored(std::move(record), is_oracle ? result.oracles[threshold] : *result.baseline, threshold);
     records.push_back(std::move(record));
   }
 }

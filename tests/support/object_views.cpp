@@ -31,7 +31,10 @@ Surface figure(std::uint64_t seed) {
   for (int ball = 0; ball < 6; ++ball) {
     Mesh mesh = bumpy_sphere(ball == 0 ? 5 : 4, seed * 10 + static_cast<std::uint64_t>(ball));
     mesh.vertices *= ball == 0 ? 0.9 : random.uniform(0.3, 0.55);
-    if (ball > 0) mesh.vertices.rowwise() += random.uniform(0.8, 1.3) * random.direction().transpose();
+    if (ball > 0) {
+      const Eigen::RowVector3d outwards = random.direction().transpose();
+      mesh.vertices.rowwise() += random.uniform(0.8, 1.3) * outwards;
+    }
     const Eigen::Index before = surface.vertices.rows();
     surface.vertices.conservativeResize(before + mesh.vertices.rows(), 3);
     surface.normals.conservativeResize(before + mesh.vertices.rows(), 3);
