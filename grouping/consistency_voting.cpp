@@ -36,12 +36,22 @@ class Vote {
   }
 
  private:
-  /// Of the rotation that carries the relative frame in the source to that in the target; accurate for small angles.
+  /// Of the rotation that carries the relative frame in the source to that in the target; accurate for small angles. Of j and i the
+  /// same to the last bit, on every machine: that is why sums are written out.
   double angle(std::size_t i, std::size_t j) const {
-    const Eigen::Matrix3d source = matches_.source_frames[i] * matches_.source_frames[j].transpose(),
-                          target = matches_.target_frames[i] * matches_.target_frames[j].transpose();
-    const double half = std::min(1.0, (target - source).norm() / std::sqrt(8.0));  // sine of half the angle
+    const auto square = [&](int a, int b) {
+      const double change = relative(matches_.target_frames, i, j, a, b) - relative(matches_.source_frames, i, j, a, b);
+      return change * change;
+    };
+    const double sum = square(0, 0) + square(1, 1) + square(2, 2) + (square(0, 1) + square(1, 0)) +
+                       (square(0, 2) + square(2, 0)) + (square(1, 2) + square(2, 1));
+    const double half = std::min(1.0, std::sqrt(sum / 8));  // sine of half the angle
     return 2 * arc_sine(half);
+  }
+
+  /// Entry of F_i F_j^T.
+  static double relative(const LocalReferenceFrames& frames, std::size_t i, std::size_t j, int a, int b) {
+    return frames[i](a, 0) * frames[j](b, 0) + frames[i](a, 1) * frames[j](b, 1) + frames[i](a, 2) * frames[j](b, 2);
   }
 
   const CorrespondenceSet& matches_;

@@ -70,6 +70,14 @@ TEST(ConsistencyVoting, TurningTheTargetWithItsFramesChangesNothing) {
   EXPECT_THAT(found.scores, Pointwise(DoubleNear(1e-9), expected.scores));
 }
 
+TEST(ConsistencyVoting, TwoMatchesVoteAlikeForEachOther) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const GroupingResult found = group_by_consistency_voting(testing::synthetic(2, 1, seed).matches);
+    ASSERT_EQ(found.scores.size(), 2u);
+    EXPECT_EQ(found.scores[0], found.scores[1]) << "to the last bit";
+  }
+}
+
 TEST(ConsistencyVoting, AnswerIsThatOfTheReference) {
   for (const FrameNeed frames : {FrameNeed::Required, FrameNeed::Optional})
     for (const int rows : {1, 2, 21, 100, 500})
