@@ -3,6 +3,7 @@
 
 // Runs the program as a user does: a line typed in a folder of its own.
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -27,6 +28,12 @@ struct Outcome {
 
   nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
+
+/// It ended well and said nothing.
+inline void expect_ok(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+}
 
 /// A working folder; what the commands say is caught outside it.
 class Workplace {

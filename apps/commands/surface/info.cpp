@@ -41,8 +41,9 @@ void add_warnings(MeshInfo& info) {
   warn(info.topology.misoriented_faces, "faces wound against the others: normals will have the wrong sign there");
   warn(info.topology.non_manifold_edges, "non-manifold edges: more than two faces meet there");
   warn(info.topology.non_manifold_vertices, "non-manifold vertices: the faces around them are not one fan");
-  warn(info.half_edges.refused_faces,
-       "non-manifold faces: a half-edge structure cannot hold them; left out of the loops and the mean edge");
+  warn(
+      info.half_edges.refused_faces,
+      "faces that no half-edge structure can hold: boundary loops are not counted, and the mean edge is of the other faces");
   if (!info.spacing)
     info.warnings.push_back("fewer than 2 distinct vertices, or coordinates too large for distances: no resolution");
 }
@@ -72,7 +73,7 @@ Json to_json(const MeshInfo& info) {
           {"faces", info.faces},
           {"components", info.topology.components},
           {"boundary_edges", info.topology.boundary_edges},
-          {"boundary_loops", info.half_edges.boundary_loops},
+          {"boundary_loops", json_or_null(info.half_edges.boundary_loops)},
           {"duplicates", info.topology.duplicate_vertices},
           {"isolated", info.topology.isolated_vertices},
           {"degenerate_faces", info.topology.degenerate_faces},
@@ -91,11 +92,12 @@ Json to_json(const MeshInfo& info) {
 
 std::string to_text(const MeshInfo& info) {
   using corral::to_text;
+  const std::optional<int> loops = info.half_edges.boundary_loops;
   std::string text = info.path + "\n  vertices    " + std::to_string(info.vertices) + " (" +
                      std::to_string(info.topology.duplicate_vertices) + " duplicates)\n  faces       " +
                      std::to_string(info.faces) + " in " + std::to_string(info.topology.components) + " components\n" +
-                     "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges in " +
-                     std::to_string(info.half_edges.boundary_loops) + " loops\n  resolution  " +
+                     "  boundary    " + std::to_string(info.topology.boundary_edges) + " edges" +
+                     (loops ? " in " + std::to_string(*loops) + " loops" : "") + "\n  resolution  " +
                      (info.spacing ? to_text(info.spacing->resolution) + " mesh units per pr (median " +
                                          to_text(info.spacing->median) + ")"
                                    : "-") +

@@ -52,11 +52,10 @@ int count_boundary_loops(const HalfEdgeMesh& half) {
 
 HalfEdgeReport inspect_half_edges(const Mesh& mesh) {
   HalfEdgeReport report;
-  if (mesh.triangles.rows() == 0) return report;
   HalfEdgeMesh half;
   for (const auto& place : mesh.vertices.rowwise()) half.add_vertex({place.x(), place.y(), place.z()});
   report.refused_faces = add_faces(SoundTriangles(mesh)(), half);
-  report.boundary_loops = count_boundary_loops(half);
+  if (report.refused_faces == 0) report.boundary_loops = count_boundary_loops(half);
   double length = 0;
   for (const auto edge : half.edges()) length += half.calc_edge_length(edge);
   if (half.n_edges() > 0) report.mean_edge_length = length / static_cast<double>(half.n_edges());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernel/surface/mesh/mesh.h"
@@ -9,9 +10,10 @@ namespace corral {
 
 /// What a half-edge structure makes of a mesh: its sound triangles (SoundTriangles) are added one by one, in order.
 struct HalfEdgeReport {
-  int refused_faces = 0;        ///< that it cannot hold: third on an edge, or in a folded fan; left out of what follows
-  int boundary_loops = 0;       ///< closed walks along boundary edges
-  double mean_edge_length = 0;  ///< over all edges, mesh units; 0 without triangles
+  int refused_faces = 0;  ///< that it cannot hold: third on an edge, or in a folded fan
+  std::optional<int>
+      boundary_loops;           ///< closed walks along boundary edges; absent if faces are refused: that makes others
+  double mean_edge_length = 0;  ///< over the edges of the faces held, mesh units; 0 without triangles
 };
 
 HalfEdgeReport inspect_half_edges(const Mesh& mesh);

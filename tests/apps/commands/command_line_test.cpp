@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using testing::expect_ok;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
@@ -23,11 +24,6 @@ using testing::lines_in;
 using testing::Outcome;
 using ::testing::StartsWith;
 using testing::Workplace;
-
-void expect_ok(const Outcome& outcome) {
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-}
 
 TEST(Help, ListsTheCommandsAndTheExitStatuses) {
   const Outcome help = Workplace().corral("--help");
@@ -74,51 +70,6 @@ TEST(Groupers, ThePaperValueIsNullWhereItHasNone) {
   EXPECT_EQ(list[2]["options"][0]["paper"], 10000);
   EXPECT_EQ(list[2]["options"][2]["name"], "seed");
   EXPECT_TRUE(list[2]["options"][2]["paper"].is_null());
-}
-
-TEST(Info, TellsWhatAMeshIs) {
-  const Workplace place;
-  write_mesh(place / "ball.ply", testing::icosphere(2));
-  place.put("square.off", "OFF\n6 2 0\n0 0 0\n1 0 0\n1 2 0\n0 2 0\n0 2 0\n5 5 0\n3 0 1 2\n3 0 2 3\n");
-  const Outcome outcome = place.corral("info --json ball.ply square.off");
-  expect_ok(outcome);
-  const auto list = outcome.json();
-  ASSERT_EQ(list.size(), 2U);
-  EXPECT_EQ(list[0]["path"], "ball.ply");
-  EXPECT_EQ(list[0]["vertices"], 162);
-  EXPECT_EQ(list[0]["faces"], 320);
-  EXPECT_EQ(list[0]["components"], 1);
-  EXPECT_EQ(list[0]["boundary_edges"], 0);
-  EXPECT_EQ(list[0]["resolution"], point_resolution(testing::icosphere(2).vertices));
-  EXPECT_THAT(list[0]["warnings"], IsEmpty());
-  EXPECT_EQ(list[1]["boundary_edges"], 4);
-  EXPECT_EQ(list[1]["duplicates"], 1);
-  EXPECT_EQ(list[1]["isolated"], 2);
-  EXPECT_EQ(list[1]["extent"], nlohmann::json::parse("[5.0, 5.0, 0.0]"));
-  EXPECT_EQ(list[1]["warnings"].size(), 2U);
-  const Outcome text = place.corral("info ball.ply square.off");
-  expect_ok(text);
-  EXPECT_THAT(text.out, AllOf(StartsWith("ball.ply\n"), HasSubstr("\nsquare.off\n"), HasSubstr("warning")));
-}
-
-TEST(Info, WhatAMeshLacksIsNull) {
-  const Workplace place;
-  place.put("point.off", "OFF\n1 0 0\n1 2 3\n");
-  place.put("none.off", "OFF\n0 0 0\n");
-  const Outcome outcome = place.corral("info point.off none.off --json");
-  expect_ok(outcome);
-  for (const auto& mesh : outcome.json()) EXPECT_TRUE(mesh["resolution"].is_null());
-}
-
-TEST(Info, TellsOfTheOtherMeshesIfOneIsBad) {
-  const Workplace place;
-  write_mesh(place / "ball.ply", testing::icosphere(1));
-  const Outcome outcome = place.corral("info missing.ply ball.ply --json");
-  EXPECT_EQ(outcome.status, 4);
-  EXPECT_EQ(outcome.err, "corral: missing.ply: does not exist\n");
-  EXPECT_EQ(outcome.json()[0]["error"], "missing.ply: does not exist");
-  EXPECT_EQ(outcome.json()[1]["vertices"], 42);
-  EXPECT_EQ(place.corral("info missing.ply").status, 3);
 }
 
 TEST(Perturb, TheTruthFitsTheCopy) {

@@ -15,6 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using testing::expect_ok;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using testing::keys_of;
@@ -23,11 +24,6 @@ using ::testing::Not;
 using testing::Outcome;
 using ::testing::StartsWith;
 using testing::Workplace;
-
-void expect_ok(const Outcome& outcome) {
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-}
 
 TEST(Group, SelectsWithEveryMethod) {
   const Workplace place;

@@ -10,15 +10,11 @@
 namespace corral {
 namespace {
 
+using testing::expect_ok;
 using ::testing::HasSubstr;
 using testing::Outcome;
 using ::testing::StartsWith;
 using testing::Workplace;
-
-void expect_ok(const Outcome& outcome) {
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-}
 
 const std::string kTurn = "0 -1 0 1\n1 0 0 2\n0 0 1 3\n0 0 0 1\n", kShift = "1 0 0 10\n0 1 0 0\n0 0 1 0\n0 0 0 1\n",
                   kLog = "0 3 4\n" + kTurn + "2 3 4\n" + kShift,
