@@ -12,9 +12,9 @@ namespace corral {
 struct FoundStatement {
   std::string text;
   std::string dataset;
-  int pairs = 0;  ///< that the number is over
-  double margin = 0, low = 0,
-         high = 0;  ///< mean difference on the same pairs (of shares, so without a unit), bootstrap interval of 95 %
+  int pairs = 0;             ///< that the number is over
+  double margin = 0;         ///< mean difference on the same pairs (of shares, so without a unit)
+  double low = 0, high = 0;  ///< its bootstrap interval of 95 %
 
   bool is_clear() const { return low > 0; }  ///< the interval is above 0
 };

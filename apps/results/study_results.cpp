@@ -3,6 +3,7 @@
 
 #include "apps/results/statistics.h"
 #include "io/text/csv_file.h"
+#include "kernel/error.h"
 #include "kernel/number_text.h"
 
 namespace corral {
@@ -51,6 +52,38 @@ std::vector<StudyFolder> read_runs(const std::vector<std::string>& folders) {
   std::vector<StudyFolder> runs;
   for (const std::string& folder : folders) runs.push_back(read_study(folder));
   return runs;
+}
+
+namespace {
+
+/// Empty if it does not begin with the prefix.
+std::string without_prefix(const std::string& name, const std::string& prefix) {
+  return name.compare(0, prefix.size(), prefix) == 0 ? name.substr(prefix.size()) : "";
+}
+
+}  // namespace
+
+void keep_methods_named(const std::string& prefix, std::vector<StudyFolder>& runs) {
+  std::size_t kept = 0;
+  for (StudyFolder& run : runs) {
+    for (ExperimentInfo& info : run.experiments) {
+      std::vector<std::string> methods;
+      for (const std::string& method : info.methods)
+        if (const std::string name = without_prefix(method, prefix); !name.empty()) methods.push_back(name);
+      kept += methods.size();
+      info.methods = std::move(methods);
+    }
+    std::vector<StudyRecord> records;
+    for (StudyRecord& record : run.records) {
+      const std::string name = without_prefix(record.method, prefix);
+      if (name.empty()) continue;
+      record.method = name;
+      records.push_back(std::move(record));
+    }
+    run.records = std::move(records);
+  }
+  if (kept == 0)
+    throw InvalidInput("claims", "prefix", quoted(prefix), "one that names of methods in the studies begin with");
 }
 
 }  // namespace corral

@@ -37,4 +37,7 @@ std::vector<StudyResults> tables_of(const std::vector<StudyFolder>& runs);
 /// Throws IoError as read_study.
 std::vector<StudyFolder> read_runs(const std::vector<std::string>& folders);
 
+/// Keeps the methods whose names begin with the prefix, and drops it from their names. Throws InvalidInput if there are none.
+void keep_methods_named(const std::string& prefix, std::vector<StudyFolder>& runs);
+
 }  // namespace corral

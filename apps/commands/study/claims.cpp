@@ -14,31 +14,10 @@ struct Settings {
   bool json = false;
 };
 
-/// The study with `<prefix><method>` in the place of each method, and without those that have none.
-void keep_methods_of(StudyFolder& run, const std::string& prefix) {
-  const auto unprefixed = [&](const std::string& name) {
-    return name.compare(0, prefix.size(), prefix) == 0 ? name.substr(prefix.size()) : std::string();
-  };
-  for (ExperimentInfo& info : run.experiments) {
-    std::vector<std::string> methods;
-    for (const std::string& method : info.methods)
-      if (const std::string name = unprefixed(method); !name.empty()) methods.push_back(name);
-    info.methods = std::move(methods);
-  }
-  std::vector<StudyRecord> records;
-  for (StudyRecord& record : run.records)
-    if (const std::string name = unprefixed(record.method); !name.empty()) {
-      record.method = name;
-      records.push_back(std::move(record));
-    }
-  run.records = std::move(records);
-}
-
 int judge(const Settings& settings) {
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
   std::vector<StudyFolder> runs = read_runs(settings.runs);
-  if (!settings.prefix.empty())
-    for (StudyFolder& run : runs) keep_methods_of(run, settings.prefix);
+  if (!settings.prefix.empty()) keep_methods_named(settings.prefix, runs);
   const std::vector<ClaimVerdict> verdicts = judge_claims(book, tables_of(runs), workers(0));
   if (!settings.json) {
     put("", claims_text(verdicts, book.slips));
@@ -58,7 +37,7 @@ void add_claims(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--claims", settings->claims, "Claims of your own, as paper/claims.toml")->type_name("FILE");
   command
-      ->add_option("--prefix", settings->prefix, "Judge the methods whose names begin so, plain-gc in the place of gc")
+      ->add_option("--prefix", settings->prefix, "Judge only the methods whose names begin with this: plain-gc as gc")
       ->type_name("TEXT");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
