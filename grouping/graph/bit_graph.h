@@ -39,8 +39,9 @@ class BitGraph {
     std::vector<Word> nodes;   ///< a bit for each node of the range
     std::vector<char> wanted;  ///< for each node of the graph below `end`, not 0 if it counts
   };
-  static constexpr int kBlock = 8,
-                       kStrip = 128;  ///< words of a range, and of a strip of its rows, which fits into the cache
+  // The rows of a range fit into the cache, a strip at a time.
+  static constexpr int kBlock = 8;    ///< words of a range
+  static constexpr int kStrip = 128;  ///< words of a strip
   /// Bytes for the counts of a block of at most so many edges.
   static double memory_of_block(int nodes, double edges) {
     const double strip = std::min(64.0 * kBlock, 1.0 * nodes) * std::min(1.0 * kStrip, nodes / 64.0 + 1) * sizeof(Word);

@@ -31,12 +31,14 @@ std::vector<char> odd_vertices(const Ends& ends, const Indices& across, Eigen::I
   }
   std::vector<char> is_odd(starts.size(), 0);
   for (std::size_t vertex = 0; vertex < starts.size(); ++vertex) {
+    is_odd[vertex] = starts[vertex] == kManySides;
+    if (starts[vertex] < 0) continue;
     int side = starts[vertex];
-    if (side >= 0) do {
-        --corners[vertex];
-        side = across[index(ends.before(side))];
-      } while (side >= 0 && side != starts[vertex]);
-    is_odd[vertex] = starts[vertex] == kManySides || (starts[vertex] >= 0 && corners[vertex] > 0);
+    do {
+      --corners[vertex];
+      side = across[index(ends.before(side))];
+    } while (side >= 0 && side != starts[vertex]);
+    is_odd[vertex] = corners[vertex] > 0;
   }
   return is_odd;
 }
