@@ -64,10 +64,8 @@ int main(int argc, char** argv) {
   const corral::BuildInfo build = corral::build_info();
   app.set_version_flag("--version", "corral " + build.version + ", commit " + build.commit);
   app.footer(
-      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded as failed, 1 anything "
-      "else.\n"
-      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest other "
-      "vertex.\n"
+      "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 some parts failed and are recorded as failed, 1 anything else.\n"
+      "Lengths with the suffix pr are in units of point resolution: the mean distance of a vertex to its nearest other vertex.\n"
       "'corral COMMAND --help' has examples.");
   corral::Action action;
   corral::add_run(app, action);

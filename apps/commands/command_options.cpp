@@ -258,7 +258,7 @@ void add_pose_options(CLI::App& command, std::string& rows, std::string& select)
 void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins) {
   command
       .add_option("--plugin", plugins,
-                  "A shared library as a further grouper, which has a name of its own (grouping/plugin.h)")
+                  "Also run the grouper in this shared library, under the name that it states (grouping/plugin.h)")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
@@ -267,7 +267,7 @@ void add_external_options(CLI::App& command, ExternalSettings& settings) {
   command
       .add_option(
           "--external", settings.methods,
-          "Another program as a further grouper: NAME='python3 mine.py {matches} {group}'. It reads the table of "
+          "Also run another program as a grouper: NAME='python3 mine.py {matches} {group}'. It reads the table of "
           "matches and writes the rows that it keeps, or a pose to {pose}, or both (apps/README.md)")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);

@@ -46,8 +46,7 @@ std::string page(const std::string& title, const std::string& body) {
   const EmbeddedFiles& files = embedded_scoreboard();
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
-         "style-src 'unsafe-inline'\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'\">\n"
          "<title>" +
          html(title) + "</title>\n<style>\n" + files.at("board.css") + "</style>\n</head>\n<body>\n<main>\n<h1>" +
          html(title) + "</h1>\n" + body + "</main>\n<script>\n" + files.at("board.js") +
@@ -97,7 +96,7 @@ std::string board_page(const Board& board, const FactsByMethod& facts) {
       "columns. "
       "MB: peak memory for 10,000 matches. "
       "Columns in per cent: the tables with that share of correct matches. Shaded: methods not distinguishable from "
-      "the best (their interval holds its share). Choose a header to sort.</p>\n<div class=\"wide\"><table "
+      "the best, whose success lies in their interval. Select a column header to sort by it.</p>\n<div class=\"wide\"><table "
       "class=\"sortable\">\n<thead><tr>" +
       head("rank") + head("method", false) + head("success");
   std::vector<std::size_t> bins;  // with any table

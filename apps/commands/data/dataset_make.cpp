@@ -83,10 +83,10 @@ void add_u3or(CLI::App& make, Action& action) {
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Scenes of 4 and 5 models in turn, chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 "
-      "%;\n"
+      "Scenes of 4 and 5 models in turn, chosen so that occlusion spreads over 60 .. 95 % and clutter over 65 .. 95 %;\n"
       "their distribution is printed at the end. An interrupted command continues when it is repeated.\n"
-      "Example:\n  corral dataset make u3or --models meshes -o data/u3or --scenes 12");
+      "Example:\n"
+      "  corral dataset make u3or --models meshes -o data/u3or --scenes 12");
   command->callback([settings, &action] {
     action = [settings]() -> int {
       settings->resolve();
@@ -113,10 +113,10 @@ void add_u3m(CLI::App& make, Action& action) {
   add_noise(*command, settings->options.noise_pr);
   add_threads(*command, settings->threads);
   command->footer(
-      "Pairs of views that overlap by 30 to 90 % are kept; their truth is exact. An interrupted command continues "
-      "when\n"
+      "Pairs of views that overlap by 30 to 90 % are kept; their truth is exact. An interrupted command continues when\n"
       "it is repeated.\n"
-      "Example:\n  corral dataset make u3m --models meshes -o data/u3m --views 8");
+      "Example:\n"
+      "  corral dataset make u3m --models meshes -o data/u3m --views 8");
   command->callback([settings, &action] {
     action = [settings]() -> int {
       settings->resolve();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// corral conformance: the contract of groupers, put to any of them.
+// corral conformance: groupers against what every grouper promises.
 #include <algorithm>
 
 #include "apps/commands/command_files.h"
@@ -88,8 +88,8 @@ int check(const Settings& settings) {
 }  // namespace
 
 void add_conformance(CLI::App& app, Action& action) {
-  auto* command =
-      app.add_subcommand("conformance", "The contract of groupers, put to any of them or to another program");
+  auto* command = app.add_subcommand(
+      "conformance", "Check groupers, ours or an external program, against what every grouper promises");
   auto settings = std::make_shared<Settings>();
   command->add_option("methods", settings->methods, "all, paper (those of 2017), or names between commas")
       ->type_name("NAMES");
@@ -99,14 +99,12 @@ void add_conformance(CLI::App& app, Action& action) {
       ->type_name("FOLDER");
   command->add_flag("--json", settings->json, "As JSON");
   command->footer(
-      "A grouper must accept a table of 0 to 3 matches; return rows of the table in ascending order; refuse or leave "
-      "out a match\n"
-      "that is not finite; return the same rows when it is called again, when the rows are shuffled, when the unit of "
-      "length changes\n"
-      "and when the target is moved; and solve an easy table. The exit status is 4 if a check is broken. RANSAC and ST "
-      "break the\n"
+      "A grouper must accept a table of 0 to 3 matches; return rows of the table in ascending order; refuse or leave out a match\n"
+      "that is not finite; return the same rows when it is called again, when the rows are shuffled, when the unit of length changes\n"
+      "and when the target is moved; and solve an easy table. The exit status is 4 if a check fails. RANSAC and ST fail the\n"
       "check of the order: RANSAC draws by row number, and ST breaks ties by it.\n"
-      "Examples:\n  corral conformance gc,ransac\n"
+      "Examples:\n"
+      "  corral conformance gc,ransac\n"
       "  corral conformance --external \"mine=python3 mine.py {matches} {group}\" -o broken");
   command->callback([settings, &action] { action = [settings] { return check(*settings); }; });
 }

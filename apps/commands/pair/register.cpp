@@ -223,19 +223,15 @@ void add_register(CLI::App& app, Action& action) {
   add_drop_stray(*command, settings->drop_stray);
   add_set_option(*command, settings->set);
   command->footer(
-      "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole "
-      "surfaces;\n"
-      "the pose under which the surfaces cover each other best is the answer. With --sensor, both are views from "
-      "there, and poses\n"
-      "are dropped that put points in front of what the other one saw.\n"
-      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 "
-      "pr; a few are\n"
-      "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of "
-      "the source that finds the\n"
-      "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other "
-      "sensor saw.\n"
+      "Several groupers propose poses, with their runners-up. Each is refined over the matches, the best on the whole surfaces;\n"
+      "the pose under which the surfaces cover each other best is returned. With --sensor, both are views from there, and poses\n"
+      "that put points in front of what the other view saw are dropped.\n"
+      "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 pr; a few are\n"
+      "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
+      "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other sensor saw.\n"
       "Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
-      "Examples:\n  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
+      "Examples:\n"
+      "  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
       "  corral register --matches matches.csv -o pose.txt");
   command->callback([settings, &action] { action = [settings] { return register_two(*settings); }; });
 }

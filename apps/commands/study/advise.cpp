@@ -70,8 +70,7 @@ void add_advise(CLI::App& app, Action& action) {
       ->required();
   command->add_option("--sample", settings->advice.sample, "Most pairs that are tried, evenly spaced")
       ->capture_default_str();
-  command->add_option("--budget-ms", settings->advice.budget_ms,
-                      "Most time that the method may take on the median pair");
+  command->add_option("--budget-ms", settings->advice.budget_ms, "Longest median time per pair");
   command->add_option("--prefer", settings->prefer, "What matters most")
       ->check(CLI::IsMember(std::vector<std::string>(kPreferences.begin(), kPreferences.end())))
       ->type_name("success|precision|recall")
@@ -80,12 +79,12 @@ void add_advise(CLI::App& app, Action& action) {
   add_match_options(*command, settings->advice.matching);
   add_set_option(*command, settings->set);
   command->footer(
-      "Every grouper, 'auto' and 'register' are run on the sample. A pair without a truth is judged by the pose of "
-      "'register' where\n"
-      "that is sure (probability of 0.9 or more), and left out where it is not. Some pairs are matched again with "
-      "denser keypoints\n"
+      "Every grouper, 'auto' and 'register' are run on the sample. A pair without a truth is judged by the pose of 'register' where\n"
+      "its probability is 0.9 or more, and is left out otherwise. Some pairs are matched again with denser keypoints\n"
       "and with other detectors and descriptors, to see whether that helps more than another grouper.\n"
-      "Examples:\n  corral advise my-scans\n  corral advise matches/*.csv --budget-ms 50 --prefer recall");
+      "Examples:\n"
+      "  corral advise my-scans\n"
+      "  corral advise matches/*.csv --budget-ms 50 --prefer recall");
   command->callback([settings, &action] { action = [settings] { return give_advice(*settings); }; });
 }
 

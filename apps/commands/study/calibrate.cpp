@@ -204,14 +204,13 @@ void add_calibrate(CLI::App& app, Action& action) {
   add_threads(*command, settings->threads);
   command->add_flag("--json", settings->json, "The table as JSON");
   command->footer(
-      "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose "
-      "is right if its\n"
-      "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the "
-      "pairs of\n"
-      "every object by a model of the others. The pairs of a study are matched as the study matched them, so that the\n"
-      "model is one for its detector and descriptor. The study must have been made by this version of the program.\n"
-      "Examples:\n  corral calibrate runs/overlap runs/clutter -o confidence.toml\n  corral calibrate data/u3m "
-      "data/u3or --test my-scans -o confidence.toml");
+      "Every pair is registered as 'corral register' does, with its surfaces and by its table of matches alone; a pose is right if its\n"
+      "mean error is at most 5 pr. A logistic model of what speaks for a pose is fitted; the row 'held out' judges the pairs of\n"
+      "every object by a model of the others. The pairs of a study are matched as the study matched them, so the\n"
+      "model applies to its detector and descriptor. The study must have been made by this version of the program.\n"
+      "Examples:\n"
+      "  corral calibrate runs/overlap runs/clutter -o confidence.toml\n"
+      "  corral calibrate data/u3m data/u3or --test my-scans -o confidence.toml");
   command->callback([settings, &action] { action = [settings] { return calibrate(*settings); }; });
 }
 

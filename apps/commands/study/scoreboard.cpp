@@ -192,12 +192,12 @@ void add_scoreboard(CLI::App& app, Action& action) {
     command->callback([settings, act, &action] { action = [settings, act] { return act(*settings); }; });
   };
   auto* write = scoreboard->add_subcommand("write", "A static site from studies");
-  write->add_option("studies", settings->folders, "Studies of corral evaluate and corral scoreboard add")
+  write->add_option("studies", settings->folders, "Studies made by 'corral evaluate' or 'corral scoreboard add'")
       ->type_name("FOLDER")
       ->required();
   add_output(*write, *settings, "Folder of the site: open its index.html, or serve it");
   write->add_flag("--no-checks", settings->no_checks,
-                  "Without putting the contract of groupers to each of ours, which takes a minute");
+                  "Skip the conformance checks of the built-in groupers, which take a minute");
   write->footer(
       "Example:\n  corral evaluate scoreboard --data data/challenge -o runs/board\n  corral scoreboard write "
       "runs/board runs/theirs -o site");
