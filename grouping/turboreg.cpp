@@ -99,7 +99,7 @@ class Triangles {
       if (pivots_.size() == held && held > count) fewest = keep_first(count);
     };
     for (int i = 0; i < end;) {
-      BitGraph::NodeBlock block{i / 64, std::min(i / 64 + BitGraph::kBlock, graph_.words()), 0, {}, {}};
+      BitGraph::NodeBlock block{i / 64, std::min(i / 64 + BitGraph::kBlock, graph_.words()), {}, {}};
       block.nodes.assign(BitGraph::kBlock, 0);
       double most_edges = 0;
       for (; i < std::min(64 * block.last, end) && most_edges < kEdgesPerRow * graph_.size(); ++i) {
@@ -121,11 +121,11 @@ class Triangles {
           });
         }
       }
-      block.end = end;
       for (int j = 0; j < end; ++j) block.wanted.push_back(common_.degree(j) > fewest);
-      graph_.count_common(block, counts_of_block);
+      const BitGraph::BlockEdges edges(graph_, block, BitGraph::Others::Behind);
+      graph_.count_common(edges, fewest, counts_of_block);
       auto shared = counts_of_block.begin();
-      graph_.for_edges(block, [&](int a, int b) { offer(a, b, *shared++); });
+      edges.for_each([&](int a, int b) { offer(a, b, *shared++); });
     }
     if (pivots_.size() > count) keep_first(count);
     found_.reserve(kThirds * pivots_.size());

@@ -42,18 +42,25 @@ HWY_INLINE std::uint64_t count_shared(const std::uint64_t* a, const std::uint64_
   return count;
 }
 
+HWY_FLATTEN int count_bits_in_both(const std::uint64_t* a, const std::uint64_t* b, int words) {
+  return static_cast<int>(count_shared(a, b, static_cast<std::size_t>(words)));
+}
+
 HWY_FLATTEN void count_common(const BitGraph& graph, int node, const Indices& others, int* counts) {
   for (std::size_t k = 0; k < others.size(); ++k)
     counts[k] = static_cast<int>(
         count_shared(graph.neighbors(node), graph.neighbors(others[k]), static_cast<std::size_t>(graph.words())));
 }
 
-/// Adds the common neighbours in some words for each edge of a block, whose rows are in `strip`.
-HWY_FLATTEN void add_common(const BitGraph& graph, const BitGraph::NodeBlock& block, const std::uint64_t* strip,
-                            int word, int words, int* counts) {
-  graph.for_edges(block, [&](int i, int j) {
-    const std::uint64_t* const row = strip + std::ptrdiff_t{i - 64 * block.first} * words;
-    *counts++ += static_cast<int>(count_shared(row, graph.neighbors(j) + word, static_cast<std::size_t>(words)));
+/// Adds the common neighbours in a strip for each edge of a block that may still have `least`.
+HWY_FLATTEN void add_common(const BitGraph& graph, const BitGraph::BlockEdges& edges, const BitGraph::Strip& strip,
+                            int least, int* counts) {
+  edges.for_each([&](int i, int j) {
+    int& count = *counts++;
+    const auto node = static_cast<std::size_t>(i - edges.first());
+    if (strip.degrees[node] == 0 || count + strip.rest[node] < least) return;
+    const auto words = static_cast<std::size_t>(strip.words);
+    count += static_cast<int>(count_shared(&strip.rows[node * words], graph.neighbors(j) + strip.word, words));
   });
 }
 
@@ -103,31 +110,56 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace corral {
 
+HWY_EXPORT(count_bits_in_both);
 HWY_EXPORT(count_common);
 HWY_EXPORT(add_common);
 HWY_EXPORT(compare_from);
 
+int BitGraph::count_in_both(const Word* a, const Word* b, int words) {
+  return HWY_DYNAMIC_DISPATCH(count_bits_in_both)(a, b, words);
+}
+
 int BitGraph::degree(int node, int first, int last) const {
-  int count = 0;
-  for (int word = first; word < last; ++word) count += static_cast<int>(hwy::PopCount(neighbors(node)[word]));
-  return count;
+  return count_in_both(neighbors(node) + first, neighbors(node) + first, last - first);
 }
 
 void BitGraph::count_common(int node, const Indices& others, int* counts) const {
   HWY_DYNAMIC_DISPATCH(count_common)(*this, node, others, counts);
 }
 
-void BitGraph::count_common(const NodeBlock& block, std::vector<int>& counts) const {
-  std::size_t edges = 0;
-  for_edges(block, [&](int, int) { ++edges; });
-  counts.assign(edges, 0);
-  std::vector<Word> strip;
-  for (int word = 0; word < words_; word += kStrip) {
-    const int words = std::min(kStrip, words_ - word);
-    strip.clear();
-    for (int node = 64 * block.first; node < std::min(64 * block.last, nodes_); ++node)
-      strip.insert(strip.end(), neighbors(node) + word, neighbors(node) + word + words);
-    HWY_DYNAMIC_DISPATCH(add_common)(*this, block, strip.data(), word, words, counts.data());
+BitGraph::BlockEdges::BlockEdges(const BitGraph& graph, const NodeBlock& block, Others side)
+    : first_(64 * block.first), start_(side == Others::Behind ? first_ : 0) {
+  const int wanted = static_cast<int>(block.wanted.size()),
+            end = side == Others::Behind ? wanted : std::min(wanted, 64 * block.last);
+  for (int j = start_; j < end; ++j) {
+    const std::size_t start = bits_.size();
+    bits_.resize(start + kBlock);
+    if (block.wanted[static_cast<std::size_t>(j)] == 0) continue;
+    for (int word = block.first; word < block.last; ++word) {
+      const Word in_front = word < j >> 6 ? ~Word{0} : word > j >> 6 ? 0 : (Word{1} << (j & 63)) - 1;
+      const auto place = static_cast<std::size_t>(word - block.first);
+      Word& nodes = bits_[start + place];
+      nodes = graph.neighbors(j)[word] & block.nodes[place] & (side == Others::Behind ? in_front : ~in_front);
+      size_ += hwy::PopCount(nodes);
+    }
+  }
+}
+
+void BitGraph::count_common(const BlockEdges& edges, int least, std::vector<int>& counts) const {
+  counts.assign(edges.size(), 0);
+  const int first = edges.first(), last = std::min(first + kNodesOfBlock, nodes_);
+  Strip strip;
+  for (int node = first; node < last; ++node) strip.rest.push_back(degree(node));
+  for (strip.word = 0; strip.word < words_; strip.word += kStrip) {
+    strip.words = std::min(kStrip, words_ - strip.word);
+    strip.rows.clear(), strip.degrees.clear();
+    for (int node = first; node < last; ++node) {
+      const Word* const row = neighbors(node) + strip.word;
+      strip.rows.insert(strip.rows.end(), row, row + strip.words);
+      strip.degrees.push_back(degree(node, strip.word, strip.word + strip.words));
+    }
+    HWY_DYNAMIC_DISPATCH(add_common)(*this, edges, strip, least, counts.data());
+    for (std::size_t node = 0; node < strip.rest.size(); ++node) strip.rest[node] -= strip.degrees[node];
   }
 }
 

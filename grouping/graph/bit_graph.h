@@ -30,45 +30,62 @@ class BitGraph {
   void connect(int a, int b) { set(a, b), set(b, a); }
   void disconnect(int a, int b) { clear(a, b), clear(b, a); }
   int degree(int node) const { return degree(node, 0, words_); }
-  int degree(int node, int first, int last) const;  ///< in the words from `first` to before `last`
+  int degree(int node, int first, int last) const;                    ///< in the words from `first` to before `last`
+  static int count_in_both(const Word* a, const Word* b, int words);  ///< bits that are set in both
 
-  /// Some nodes of a range, and those that count as their neighbours.
+  /// Some nodes of a range, and others.
   struct NodeBlock {
     int first, last;           ///< words: the range is from node 64 first to before 64 last
-    int end;                   ///< nodes from here on do not count
     std::vector<Word> nodes;   ///< a bit for each node of the range
-    std::vector<char> wanted;  ///< for each node of the graph below `end`, not 0 if it counts
+    std::vector<char> wanted;  ///< for each node from 0 on, not 0 if it is among the others
+  };
+  enum class Others { Behind, InFront };  ///< of the node of a block that they are an edge with
+
+  /// The edges between nodes of a block and others, on one side of them.
+  class BlockEdges {
+   public:
+    BlockEdges(const BitGraph& graph, const NodeBlock& block, Others side);
+    std::size_t size() const { return size_; }
+    int first() const { return first_; }  ///< node of the range
+
+    /// Calls visit(i, j) for every edge, node i of the block. In the order of j, then i.
+    template <class Visit>
+    void for_each(Visit&& visit) const {
+      int j = start_;
+      for (auto words = bits_.begin(); words != bits_.end(); ++j)
+        for (int start = first_; start < first_ + kNodesOfBlock; start += 64, ++words)
+          for (Word rest = *words; rest != 0; rest &= rest - 1) visit(start + lowest(rest), j);
+    }
+
+   private:
+    int first_, start_;
+    std::size_t size_ = 0;
+    std::vector<Word> bits_;  ///< for each node from `start` on, which of the block it is an edge with
+  };
+
+  /// Some words of the rows of all nodes of a range.
+  struct Strip {
+    int word, words;         ///< the first of them, and how many
+    std::vector<Word> rows;  ///< one node behind the other
+    Indices degrees, rest;   ///< of each node: in these words; in these and those that follow
   };
   // The rows of a range fit into the cache, a strip at a time.
   static constexpr int kBlock = 8;    ///< words of a range
   static constexpr int kStrip = 128;  ///< words of a strip
+  static constexpr int kNodesOfBlock = 64 * kBlock;
   /// Bytes for the counts of a block of at most so many edges.
   static double memory_of_block(int nodes, double edges) {
-    const double strip = std::min(64.0 * kBlock, 1.0 * nodes) * std::min(1.0 * kStrip, nodes / 64.0 + 1) * sizeof(Word);
-    return 4 * std::min(edges, nodes * (nodes - 1.0) / 2) + strip + nodes;
+    const double strip =
+        std::min(1.0 * kNodesOfBlock, 1.0 * nodes) * std::min(1.0 * kStrip, nodes / 64.0 + 1) * sizeof(Word);
+    return 4 * std::min(edges, nodes * (nodes - 1.0) / 2) + strip + nodes * (1 + 8.0 * kBlock) + 8 * kNodesOfBlock;
   }
 
   /// counts[k] = the number of common neighbours of `node` and others[k].
   void count_common(int node, const Indices& others, int* counts) const;
 
-  /// Calls visit(i, j) for every edge of a block: node i of the block, j behind it and below `end`, both `wanted`. In the order
-  /// of j, then i.
-  template <class Visit>
-  void for_edges(const NodeBlock& block, Visit&& visit) const {
-    for (int j = 64 * block.first + 1; j < block.end; ++j) {
-      if (block.wanted[static_cast<std::size_t>(j)] == 0) continue;
-      const int behind = std::min(block.last, (j >> 6) + 1);
-      for (int word = block.first; word < behind; ++word) {
-        Word nodes = neighbors(j)[word] & block.nodes[static_cast<std::size_t>(word - block.first)];
-        if (word == j >> 6) nodes &= (Word{1} << (j & 63)) - 1;
-        for (; nodes != 0; nodes &= nodes - 1) visit(64 * word + lowest(nodes), j);
-      }
-    }
-  }
-
-  /// counts[k] = the number of common neighbours of the ends of edge k of for_edges(). The rows of a block stay in the cache while
-  /// those of all others pass by.
-  void count_common(const NodeBlock& block, std::vector<int>& counts) const;
+  /// counts[k] = the number of common neighbours of the ends of edge k; where that is less than `least`, that number
+  /// or less. The rows of a block stay in the cache while those of all others pass by.
+  void count_common(const BlockEdges& edges, int least, std::vector<int>& counts) const;
 
   /// Calls visit(j) for every neighbour j of the node, ascending.
   template <class Visit>

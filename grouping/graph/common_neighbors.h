@@ -42,6 +42,7 @@ class CommonNeighbors {
   const BitGraph& graph_;
   Indices degrees_, in_dense_;         ///< |N(j)|, |H & N(j)|
   std::vector<BitGraph::Word> dense_;  ///< H
+  int dense_nodes_ = 0;                ///< |H|
   Indices added_, removed_;
   std::vector<int> counts_;
 };

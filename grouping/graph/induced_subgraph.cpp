@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "grouping/graph/induced_subgraph.h"
 
-#include <hwy/base.h>
-
 #include <algorithm>
 
 namespace corral {
@@ -25,10 +23,7 @@ BitGraph InducedSubgraphs::operator()(const Indices& nodes) {
 
 /// By the edges, or by those that are missing where these are fewer.
 void InducedSubgraphs::add_row(const BitGraph::Word* neighbors, int k, BitGraph& subgraph) const {
-  int edges = 0;
-  for (std::size_t word = 0; word < chosen_.size(); ++word)
-    edges += static_cast<int>(hwy::PopCount(neighbors[word] & chosen_[word]));
-  const bool has_most = 2 * edges > subgraph.size();
+  const bool has_most = 2 * BitGraph::count_in_both(neighbors, chosen_.data(), graph_.words()) > subgraph.size();
   if (has_most)
     for (int other = 0; other < subgraph.size(); other += 64)
       subgraph.bits_[subgraph.start(k) + static_cast<std::size_t>(other / 64)] =

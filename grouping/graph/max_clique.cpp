@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "grouping/graph/core_numbers.h"
+#include "grouping/graph/edge_support.h"
 #include "grouping/graph/induced_subgraph.h"
 
 namespace corral {
@@ -15,10 +16,12 @@ namespace {
 using Word = BitGraph::Word;
 
 int count_bits(const std::vector<Word>& words) {
-  int count = 0;
-  for (const Word word : words) count += static_cast<int>(hwy::PopCount(word));
-  return count;
+  return BitGraph::count_in_both(words.data(), words.data(), static_cast<int>(words.size()));
 }
+
+constexpr int kNodesOfLarge = 8192;  // of so many nodes edges in few triangles are removed first
+constexpr double kMostGrown = 1e10;  // words compared to grow first cliques
+constexpr int kWorkPerWord = 8;      // of the graph that one of candidates is made from
 
 int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word)); }
 
@@ -44,7 +47,8 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_st
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
   return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) +
-         2 * MissingEdges::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+         (nodes < kNodesOfLarge ? 0 : edge_support_memory(nodes)) + 2 * MissingEdges::memory(nodes) +
+         2.5 * BitGraph::memory(nodes) + 4096;
 }
 
 int MaxCliqueSearch::size_of_first() const {
@@ -61,9 +65,11 @@ int MaxCliqueSearch::size_of_first() const {
 
 std::optional<Indices> MaxCliqueSearch::find_one(std::int64_t max_steps) {
   Indices best;
-  for (int node = 0; node < graph_.size(); ++node) {
+  double words = 0;
+  for (int node = 0; node < graph_.size() && words < kMostGrown; ++node) {
     if (cores_[static_cast<std::size_t>(node)] < static_cast<int>(best.size())) break;
     Indices grown = grow_from(node, best.size());
+    words += static_cast<double>(grown.size()) * graph_.words();
     if (grown.size() > best.size()) best = std::move(grown);
   }
   best = names_of(best);
@@ -118,11 +124,13 @@ Indices MaxCliqueSearch::grow_from(int node, std::size_t beaten) const {
 
 bool MaxCliqueSearch::search(std::int64_t max_steps) {
   steps_ = 0, max_steps_ = max_steps, work_ = 0;
+  const bool is_large = graph_.size() >= kNodesOfLarge && !missing_.are_listed();
   clique_.clear();
   InducedSubgraphs induced(graph_);
   Coloring of_graph(graph_, missing_);
   for (node_ = 0; node_ < graph_.size(); ++node_) {
     if (cores_[static_cast<std::size_t>(node_)] + 1 < needed_) break;  // so are all that follow
+    if (is_large && node_ % BitGraph::kNodesOfBlock == 0) remove_thin_edges(node_);
     candidates_ = candidates_of(node_);
     if (static_cast<int>(candidates_.size()) + 1 < needed_) continue;
     if (++steps_ > max_steps_) return false;
@@ -138,6 +146,7 @@ bool MaxCliqueSearch::search(std::int64_t max_steps) {
       continue;
     }
     const BitGraph subgraph = induced(candidates_);
+    work_ += static_cast<std::int64_t>(candidates_.size()) * graph_.words() * kWorkPerWord;
     const MissingEdges missing(subgraph);
     Coloring coloring(subgraph, missing);
     levels_[0].candidates.assign(static_cast<std::size_t>(subgraph.words()), ~Word{0});
@@ -153,19 +162,43 @@ void MaxCliqueSearch::set_candidates(const BitGraph& graph) {
   for (const int node : candidates_) words[static_cast<std::size_t>(node >> 6)] |= Word{1} << (node & 63);
 }
 
+Indices MaxCliqueSearch::later_neighbors(int node) const {
+  Indices later;
+  BitGraph::for_bits(graph_.neighbors(node), (node + 63) / 64, [&](int other) {
+    if (other < node) later.push_back(other);
+  });
+  return later;
+}
+
+/// Whether neighbours in common with others are counted one by one.
+bool MaxCliqueSearch::is_sparse(int node, const Indices& others) const {
+  const int name = names_[static_cast<std::size_t>(node)];
+  return !common_.is_faster(name, 0, whole_.words(), static_cast<int>(others.size()));
+}
+
+/// Removes edges between nodes of a block, from this one on, and later ones that are in too few triangles for a clique of one node
+/// less than needed, where candidates_of() would count these one by one.
+void MaxCliqueSearch::remove_thin_edges(int node) {
+  Indices nodes;
+  const int end = std::min(node + BitGraph::kNodesOfBlock, graph_.size());
+  for (; node < end && cores_[static_cast<std::size_t>(node)] + 1 >= needed_; ++node) {
+    const Indices later = later_neighbors(node);
+    if (static_cast<int>(later.size()) + 1 >= needed_ && is_sparse(node, later)) nodes.push_back(node);
+  }
+  remove_edges_below_support(graph_, nodes, needed_ - 3);
+}
+
 /// The neighbours removed later that have enough neighbours in common with the node.
 Indices MaxCliqueSearch::candidates_of(int node) {
   if (node + 1 < needed_) return {};
-  Indices later, kept;
-  graph_.for_neighbors(node, [&](int other) {
-    if (other < node) later.push_back(other);
-  });
+  const Indices later = later_neighbors(node);
+  Indices kept;
   if (static_cast<int>(later.size()) + 1 < needed_) return {};
   const int name = names_[static_cast<std::size_t>(node)];
   const auto keep = [&](int other, int common) {
     if (common + 2 >= needed_) kept.push_back(other);
   };
-  if (common_.is_faster(name, 0, whole_.words(), static_cast<int>(later.size()))) {
+  if (!is_sparse(node, later)) {
     const std::vector<int>& common = common_.count(name, 0, whole_.words());
     for (const int other : later)
       keep(other, common[static_cast<std::size_t>(names_[static_cast<std::size_t>(other)])]);

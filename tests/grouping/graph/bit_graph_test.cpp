@@ -69,30 +69,47 @@ TEST(ConsistencyGraph, IsThatOfThePlainForm) {
 }
 
 TEST(BitGraph, CommonNeighboursOfABlockAreThoseOfItsEdges) {
+  constexpr int kLeast = 300;
   const CorrespondenceSet table = testing::harsh_table(1300, 0.4, 7);
   const BitGraph graph = consistency_graph(table, 6);
-  for (const int first : {0, 5, 16}) {
-    BitGraph::NodeBlock block{first, std::min(first + BitGraph::kBlock, graph.words()), 1250, {}, {}};
-    for (int word = 0; word < BitGraph::kBlock; ++word) block.nodes.push_back(0x5555FFFF0000AAAA);
-    for (int j = 0; j < block.end; ++j) block.wanted.push_back(j % 3 != 0);
-    std::vector<int> counts;
-    graph.count_common(block, counts);
-    std::size_t edges = 0;
-    std::set<std::pair<int, int>> seen;
-    graph.for_edges(block, [&](int i, int j) {
-      Indices common(1);
-      graph.count_common(i, {j}, common.data());
-      ASSERT_EQ(counts.at(edges++), common[0]) << i << " " << j;
-      seen.emplace(i, j);
-    });
-    EXPECT_EQ(edges, counts.size());
-    std::set<std::pair<int, int>> expected;
-    for (int i = 64 * first; i < std::min(64 * block.last, graph.size()); ++i)
-      for (int j = i + 1; j < block.end; ++j)
-        if (j % 3 != 0 && graph.is_edge(i, j) && (0x5555FFFF0000AAAA >> (i % 64) & 1) != 0) expected.emplace(i, j);
-    EXPECT_EQ(seen, expected);
-    EXPECT_GT(seen.size(), 500u);
-  }
+  for (const int first : {0, 5, 16})
+    for (const auto side : {BitGraph::Others::Behind, BitGraph::Others::InFront}) {
+      const bool is_behind = side == BitGraph::Others::Behind;
+      BitGraph::NodeBlock block{first, std::min(first + BitGraph::kBlock, graph.words()), {}, {}};
+      for (int word = 0; word < BitGraph::kBlock; ++word) block.nodes.push_back(0x5555FFFF0000AAAA);
+      for (int j = 0; j < 1250; ++j) block.wanted.push_back(j % 3 != 0);
+      const BitGraph::BlockEdges edges(graph, block, side);
+      std::vector<int> counts, bounded;
+      graph.count_common(edges, 0, counts);
+      graph.count_common(edges, kLeast, bounded);
+      std::size_t edge = 0;
+      int fewer = 0;
+      std::set<std::pair<int, int>> seen;
+      edges.for_each([&](int i, int j) {
+        Indices common(1);
+        graph.count_common(i, {j}, common.data());
+        ASSERT_EQ(counts.at(edge), common[0]) << i << " " << j;
+        if (common[0] >= kLeast) {
+          ASSERT_EQ(bounded.at(edge), common[0]) << i << " " << j;
+        } else {
+          ASSERT_LT(bounded.at(edge), kLeast) << i << " " << j;
+          ++fewer;
+        }
+        ++edge;
+        seen.emplace(i, j);
+      });
+      EXPECT_EQ(edge, counts.size());
+      EXPECT_EQ(edge, edges.size());
+      EXPECT_TRUE(fewer > 100 && fewer + 100 < static_cast<int>(edge)) << fewer;
+      std::set<std::pair<int, int>> expected;
+      for (int i = 64 * first; i < std::min(64 * block.last, graph.size()); ++i)
+        for (int j = 0; j < 1250; ++j)
+          if (j % 3 != 0 && (is_behind ? j > i : j < i) && graph.is_edge(i, j) &&
+              (0x5555FFFF0000AAAA >> (i % 64) & 1) != 0)
+            expected.emplace(i, j);
+      EXPECT_EQ(seen, expected);
+      EXPECT_GT(seen.size(), 500u);
+    }
 }
 
 TEST(SampledDegrees, CountTheRowsAtEvenSteps) {

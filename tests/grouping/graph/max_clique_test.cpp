@@ -70,6 +70,21 @@ TEST(MaxClique, OfMoreNodesThanAWordHolds) {
   }
 }
 
+/// Where edges in few triangles are removed first.
+TEST(MaxClique, OfALargeSparseGraph) {
+  constexpr int kClique = 90, kStep = 95;
+  RandomStream random(2);
+  BitGraph graph = testing::random_graph(random, kClique * kStep, 0.015);
+  std::vector<Indices> planted(2);
+  for (int k = 0; k < kClique; ++k)
+    for (std::size_t each : {0, 1}) planted[each].push_back(kStep * k + 40 * static_cast<int>(each));
+  for (const Indices& clique : planted)
+    for (const int a : clique)
+      for (const int b : clique)
+        if (a < b) graph.connect(a, b);
+  EXPECT_EQ(all_largest(graph), planted);
+}
+
 /// Where the edges that are missing are listed.
 TEST(MaxClique, OfGraphsThatLackFewEdgesAreTheLargestMaximalOnes) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "grouping/graph/edge_support.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tests/support/random_graphs.h"
+
+namespace corral {
+namespace {
+
+Indices all_nodes(const BitGraph& graph) {
+  Indices nodes(static_cast<std::size_t>(graph.size()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  return nodes;
+}
+
+int support(const BitGraph& graph, int a, int b) {
+  Indices common(1);
+  graph.count_common(a, {b}, common.data());
+  return common[0];
+}
+
+TEST(EdgeSupport, InOneBlockItIsThatOfTheWholeGraph) {
+  RandomStream random(3);
+  const BitGraph whole = testing::random_graph(random, 300, 0.2);
+  BitGraph graph = whole;
+  const Indices nodes{2, 63, 64, 130, 200, 299};
+  remove_edges_below_support(graph, nodes, 12);
+  int removed = 0, kept = 0;
+  for (int a = 0; a < whole.size(); ++a)
+    for (int b = a + 1; b < whole.size(); ++b) {
+      const bool is_named = std::binary_search(nodes.begin(), nodes.end(), b);
+      const bool is_kept = whole.is_edge(a, b) && (!is_named || support(whole, a, b) >= 12);
+      ASSERT_EQ(graph.is_edge(a, b), is_kept) << a << " " << b;
+      ASSERT_EQ(graph.is_edge(b, a), is_kept) << a << " " << b;
+      if (is_named && whole.is_edge(a, b)) ++(is_kept ? kept : removed);
+    }
+  EXPECT_GT(removed, 30);
+  EXPECT_GT(kept, 30);
+}
+
+TEST(EdgeSupport, CliquesOfTheSizeLoseNoEdgeAndOthersDo) {
+  constexpr int kClique = 60, kStep = 31;
+  RandomStream random(5);
+  BitGraph graph = testing::random_graph(random, kClique * kStep, 0.1);
+  for (int a = 0; a < kClique; ++a)
+    for (int b = 0; b < a; ++b) graph.connect(kStep * a, kStep * b);
+  const BitGraph whole = graph;
+  remove_edges_below_support(graph, all_nodes(graph), kClique - 2);
+  int left = 0;
+  for (int a = 0; a < graph.size(); ++a) left += graph.degree(a);
+  for (int a = 0; a < kClique; ++a)
+    for (int b = 0; b < a; ++b) EXPECT_TRUE(graph.is_edge(kStep * a, kStep * b));
+  EXPECT_LT(left, 2 * kClique * kClique);
+}
+
+/// Two triangles share an edge; without their edges at one node, the others there support nothing.
+TEST(EdgeSupport, EdgesThatAreGoneSupportNoLaterBlock) {
+  constexpr int kNode = 1000;  // in another block than 0 and 1
+  BitGraph graph = testing::graph_of(1200, {{0, 1}, {0, kNode}, {1, kNode}, {0, kNode + 1}, {1, kNode + 1}});
+  ASSERT_EQ(support(graph, 0, 1), 2);
+  remove_edges_below_support(graph, {kNode}, 2);
+  EXPECT_FALSE(graph.is_edge(kNode, 0) || graph.is_edge(1, kNode));
+  EXPECT_TRUE(graph.is_edge(0, 1) && graph.is_edge(0, kNode + 1));
+  remove_edges_below_support(graph, {1}, 2);
+  EXPECT_FALSE(graph.is_edge(0, 1));
+}
+
+TEST(EdgeSupport, OfNoNodesNothing) {
+  BitGraph graph(0);
+  remove_edges_below_support(graph, {}, 5);
+  BitGraph pair = testing::graph_of(2, {{0, 1}});
+  remove_edges_below_support(pair, {}, 5);
+  EXPECT_TRUE(pair.is_edge(0, 1));
+}
+
+}  // namespace
+}  // namespace corral
