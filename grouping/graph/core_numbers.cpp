@@ -11,7 +11,12 @@ namespace {
 class Peeling {
  public:
   explicit Peeling(const BitGraph& graph)
-      : graph_(graph), degrees_(count()), order_(count()), places_(count()), first_(count() + 1) {
+      : graph_(graph),
+        degrees_(count()),
+        order_(count()),
+        places_(count()),
+        first_(count() + 1),
+        left_(static_cast<std::size_t>(graph.words()), ~BitGraph::Word{0}) {
     for (std::size_t v = 0; v < count(); ++v) degrees_[v] = graph.degree(static_cast<int>(v));
     for (const int degree : degrees_) ++first_[static_cast<std::size_t>(degree) + 1];
     for (std::size_t degree = 1; degree < first_.size(); ++degree) first_[degree] += first_[degree - 1];
@@ -25,9 +30,15 @@ class Peeling {
   CoreNumbers run() {
     for (std::size_t k = 0; k < count(); ++k) {
       const int node = order_[k];
-      graph_.for_neighbors(node, [&](int other) {
-        if (degrees_[static_cast<std::size_t>(other)] > degrees_[static_cast<std::size_t>(node)]) lower(other);
-      });
+      const int degree = degrees_[static_cast<std::size_t>(node)];
+      left_[static_cast<std::size_t>(node >> 6)] &= ~(BitGraph::Word{1} << (node & 63));
+      for (int word = 0; word < graph_.words(); ++word) {
+        const BitGraph::Word others = graph_.neighbors(node)[word] & left_[static_cast<std::size_t>(word)];
+        BitGraph::for_bits(&others, 1, [&](int bit) {
+          const int other = 64 * word + bit;
+          if (degrees_[static_cast<std::size_t>(other)] > degree) lower(other);
+        });
+      }
     }
     return {std::move(degrees_), std::move(order_)};
   }
@@ -49,6 +60,7 @@ class Peeling {
 
   const BitGraph& graph_;
   Indices degrees_, order_, places_, first_;
+  std::vector<BitGraph::Word> left_;  ///< a bit for each node
 };
 
 }  // namespace

@@ -20,8 +20,8 @@ int count_bits(const std::vector<Word>& words) {
 }
 
 constexpr int kNodesOfLarge = 8192;  // of so many nodes edges in few triangles are removed first
-constexpr double kMostGrown = 1e10;  // words compared to grow first cliques
-constexpr int kWorkPerWord = 8;      // of the graph that one of candidates is made from
+constexpr double kMostGrown = 4e9;   // words compared to grow first cliques
+constexpr int kWorkPerWord = 16;     // of the graph that one of candidates is made from
 
 int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word)); }
 
@@ -133,7 +133,7 @@ bool MaxCliqueSearch::search(std::int64_t max_steps) {
     if (is_large && node_ % BitGraph::kNodesOfBlock == 0) remove_thin_edges(node_);
     candidates_ = candidates_of(node_);
     if (static_cast<int>(candidates_.size()) + 1 < needed_) continue;
-    if (++steps_ > max_steps_) return false;
+    if (++steps_ > max_steps_ || work_ / work_per_step_ > max_steps_) return false;
     if (candidates_.empty()) {
       found_();
       continue;
