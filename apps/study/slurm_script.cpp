@@ -27,6 +27,9 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
          "#SBATCH --requeue\n#SBATCH --ntasks=1\n";
 }
 
+/// In front of the start of a shard, so that no signal comes before it.
+constexpr char kPassOn[] = "trap 'kill -TERM \"$!\" 2> /dev/null' TERM\n";
+
 /// What follows the start of a shard. Slurm itself requeues what is lost with a node, but not what a signal ended. A wait that
 /// a signal interrupts returns before the shard has ended. The state is no longer RUNNING where a user cancels the job. The
 /// task goes by its array, as the last one of an array has the number of the whole for its job. 143 is an end in order, as before
@@ -34,7 +37,6 @@ std::string head(const SlurmJobs& jobs, const std::string& name, const std::stri
 constexpr char kWatch[] =
     "shard=$!\n"
     "task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\n"
-    "trap 'kill -TERM \"$shard\" 2> /dev/null' TERM\n"
     "while wait \"$shard\"; status=$?; kill -0 \"$shard\" 2> /dev/null; do :; done\n"
     "most=5\n"
     "if [ \"$status\" = 143 ]; then most=100; fi\n"
@@ -72,7 +74,7 @@ std::string shards_script(const SlurmJobs& jobs) {
   return head(jobs, "corral", "shard-%a.log") +
          option("array", "1-" + count + (jobs.at_once > 0 ? "%" + std::to_string(jobs.at_once) : "")) +
          option("cpus-per-task", std::to_string(jobs.processors)) + option("time", jobs.time) +
-         option("mem", jobs.memory) + option("signal", "B:TERM@60") + shell_words(jobs.evaluate) +
+         option("mem", jobs.memory) + option("signal", "B:TERM@60") + kPassOn + shell_words(jobs.evaluate) +
          " --shard \"$SLURM_ARRAY_TASK_ID/" + count + "\" &\n" + kWatch;
 }
 

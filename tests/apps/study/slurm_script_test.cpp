@@ -69,6 +69,7 @@ TEST(SlurmScript, AsksForWhatIsAskedFor) {
                                     "#SBATCH --time=90\n"
                                     "#SBATCH --mem=2G\n"
                                     "#SBATCH --signal=B:TERM@60\n"
+                                    "trap 'kill -TERM \"$!\" 2> /dev/null' TERM\n"
                                     "/bin/corral evaluate noise --shard \"$SLURM_ARRAY_TASK_ID/50\" &\n"
                                     "shard=$!\n"));
   jobs.at_once = 20;
