@@ -83,7 +83,7 @@ void keep_methods_named(const std::string& prefix, std::vector<StudyFolder>& run
     run.records = std::move(records);
   }
   if (kept == 0)
-    throw InvalidInput("claims", "prefix", quoted(prefix), "one that names of methods in the studies begin with");
+    throw InvalidInput("claims", "prefix", quoted(prefix), "the beginning of a method's name in the studies");
 }
 
 }  // namespace corral

@@ -19,9 +19,9 @@ int count_bits(const std::vector<Word>& words) {
   return BitGraph::count_in_both(words.data(), words.data(), static_cast<int>(words.size()));
 }
 
-constexpr int kNodesOfLarge = 8192;  // of so many nodes edges in few triangles are removed first
-constexpr double kMostGrown = 4e9;   // words compared to grow first cliques
-constexpr int kWorkPerWord = 16;     // of the graph that one of candidates is made from
+constexpr int kNodesOfLarge = 8192;  // a graph of so many loses edges in few triangles first
+constexpr double kMostGrown = 4e9;   // words read to grow first cliques
+constexpr int kWorkPerWord = 16;     // that is read to make a graph of candidates
 
 int lowest(Word word) { return static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(word)); }
 
@@ -176,8 +176,8 @@ bool MaxCliqueSearch::is_sparse(int node, const Indices& others) const {
   return !common_.is_faster(name, 0, whole_.words(), static_cast<int>(others.size()));
 }
 
-/// Removes edges between nodes of a block, from this one on, and later ones that are in too few triangles for a clique of one node
-/// less than needed, where candidates_of() would count these one by one.
+/// Removes edges between the nodes of a block that begins with this one and nodes removed later: those in too few triangles for a
+/// clique of one node less than needed, where candidates_of() would count common neighbours one by one.
 void MaxCliqueSearch::remove_thin_edges(int node) {
   Indices nodes;
   const int end = std::min(node + BitGraph::kNodesOfBlock, graph_.size());

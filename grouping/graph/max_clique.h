@@ -15,8 +15,8 @@ namespace corral {
 /// For each node in turn the cliques are searched that consist of it and nodes which are removed after it in the order of
 /// core_numbers(). Candidates are coloured so that neighbours differ; a branch is left when its clique and the number of
 /// colours together do not reach the size that is needed. A first clique is grown greedily from each node, neighbours of the
-/// largest core number first. Nodes whose core number is too small for that size never take part, nor, of large graphs, do edges in
-/// too few triangles.
+/// largest core number first. Nodes whose core number is too small for that size never take part; in large graphs neither do edges
+/// in too few triangles.
 /// Source    [tomita2003efficient] (colouring), [eppstein2010listing] (order), [cohen2008trusses] (triangles).
 /// Cost      Exponential in the worst case. A step is one node put into a clique. Steps are bounded, and so is the work of
 ///           colouring (coloring.h) and of making graphs of candidates, to `work_per_step` for each step allowed: the

@@ -48,7 +48,6 @@ TEST(EdgeSupport, CliquesOfTheSizeLoseNoEdgeAndOthersDo) {
   BitGraph graph = testing::random_graph(random, kClique * kStep, 0.1);
   for (int a = 0; a < kClique; ++a)
     for (int b = 0; b < a; ++b) graph.connect(kStep * a, kStep * b);
-  const BitGraph whole = graph;
   remove_edges_below_support(graph, all_nodes(graph), kClique - 2);
   int left = 0;
   for (int a = 0; a < graph.size(); ++a) left += graph.degree(a);
