@@ -5,14 +5,28 @@
 
 namespace corral {
 
-/// Removes edges whose support is less than `least`: those from the given nodes, ascending, to nodes of smaller number. The support
-/// of an edge is the number of common neighbours of its ends, that is, of triangles that it is in. In a clique of s nodes every edge has
-/// s - 2 or more: with `least` up to that, no clique of s nodes loses one. Removed edges do not support those of later blocks.
+/// Removes edges from a graph that are in no clique of s nodes. The support of an edge is the number of common neighbours of its ends, that
+/// is, of triangles that it is in: in such a clique every edge has s - 2 or more, and every node one edge more than that.
 /// Source    [cohen2008trusses], one pass.
 /// Cost      O(M edges / 64) time, in blocks (BitGraph::NodeBlock).
-void remove_edges_below_support(BitGraph& graph, const Indices& nodes, int least);
+class EdgeSupport {
+ public:
+  /// `graph` must outlive it, and change by it alone.
+  explicit EdgeSupport(BitGraph& graph);
 
-/// Bytes for a graph of so many nodes.
-double edge_support_memory(int nodes);
+  /// Bytes for a graph of so many nodes.
+  static double memory(int nodes);
+
+  /// Removes all edges of nodes that have at most `least`, until none is left; and those whose support is less than
+  /// `least`, from the given nodes, ascending, to nodes of smaller number. Removed edges do not support those of later blocks.
+  void remove_below(int least, const Indices& nodes);
+
+ private:
+  void disconnect(int a, int b);
+  void remove_small_nodes(int least);
+
+  BitGraph& graph_;
+  Indices degrees_;
+};
 
 }  // namespace corral

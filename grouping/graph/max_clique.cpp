@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "grouping/graph/core_numbers.h"
-#include "grouping/graph/edge_support.h"
 #include "grouping/graph/induced_subgraph.h"
 
 namespace corral {
@@ -47,7 +46,7 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_st
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
   return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) +
-         (nodes < kNodesOfLarge ? 0 : edge_support_memory(nodes)) + 2 * MissingEdges::memory(nodes) +
+         EdgeSupport::memory(nodes) + 2 * MissingEdges::memory(nodes) +
          2.5 * BitGraph::memory(nodes) + 4096;
 }
 
@@ -128,9 +127,10 @@ bool MaxCliqueSearch::search(std::int64_t max_steps) {
   clique_.clear();
   InducedSubgraphs induced(graph_);
   Coloring of_graph(graph_, missing_);
+  EdgeSupport support(graph_);
   for (node_ = 0; node_ < graph_.size(); ++node_) {
     if (cores_[static_cast<std::size_t>(node_)] + 1 < needed_) break;  // so are all that follow
-    if (is_large && node_ % BitGraph::kNodesOfBlock == 0) remove_thin_edges(node_);
+    if (is_large && node_ % BitGraph::kNodesOfBlock == 0) remove_thin_edges(node_, support);
     candidates_ = candidates_of(node_);
     if (static_cast<int>(candidates_.size()) + 1 < needed_) continue;
     if (++steps_ > max_steps_ || work_ / work_per_step_ > max_steps_) return false;
@@ -178,14 +178,14 @@ bool MaxCliqueSearch::is_sparse(int node, const Indices& others) const {
 
 /// Removes edges between the nodes of a block that begins with this one and nodes removed later: those in too few triangles for a
 /// clique of one node less than needed, where candidates_of() would count common neighbours one by one.
-void MaxCliqueSearch::remove_thin_edges(int node) {
+void MaxCliqueSearch::remove_thin_edges(int node, EdgeSupport& support) {
   Indices nodes;
   const int end = std::min(node + BitGraph::kNodesOfBlock, graph_.size());
   for (; node < end && cores_[static_cast<std::size_t>(node)] + 1 >= needed_; ++node) {
     const Indices later = later_neighbors(node);
     if (static_cast<int>(later.size()) + 1 >= needed_ && is_sparse(node, later)) nodes.push_back(node);
   }
-  remove_edges_below_support(graph_, nodes, needed_ - 3);
+  support.remove_below(needed_ - 3, nodes);
 }
 
 /// The neighbours removed later that have enough neighbours in common with the node.

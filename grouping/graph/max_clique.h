@@ -7,6 +7,7 @@
 
 #include "grouping/graph/coloring.h"
 #include "grouping/graph/common_neighbors.h"
+#include "grouping/graph/edge_support.h"
 
 namespace corral {
 
@@ -52,7 +53,7 @@ class MaxCliqueSearch {
   Indices candidates_of(int node);
   Indices later_neighbors(int node) const;
   bool is_sparse(int node, const Indices& others) const;
-  void remove_thin_edges(int node);
+  void remove_thin_edges(int node, EdgeSupport& support);
   void set_candidates(const BitGraph& graph);
   bool take_all(const std::vector<BitGraph::Word>& candidates);
   bool expand(const BitGraph& graph, Coloring& coloring);

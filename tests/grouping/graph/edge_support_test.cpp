@@ -28,7 +28,7 @@ TEST(EdgeSupport, InOneBlockItIsThatOfTheWholeGraph) {
   const BitGraph whole = testing::random_graph(random, 300, 0.2);
   BitGraph graph = whole;
   const Indices nodes{2, 63, 64, 130, 200, 299};
-  remove_edges_below_support(graph, nodes, 12);
+  EdgeSupport(graph).remove_below(12, nodes);
   int removed = 0, kept = 0;
   for (int a = 0; a < whole.size(); ++a)
     for (int b = a + 1; b < whole.size(); ++b) {
@@ -48,7 +48,7 @@ TEST(EdgeSupport, CliquesOfTheSizeLoseNoEdgeAndOthersDo) {
   BitGraph graph = testing::random_graph(random, kClique * kStep, 0.1);
   for (int a = 0; a < kClique; ++a)
     for (int b = 0; b < a; ++b) graph.connect(kStep * a, kStep * b);
-  remove_edges_below_support(graph, all_nodes(graph), kClique - 2);
+  EdgeSupport(graph).remove_below(kClique - 2, all_nodes(graph));
   int left = 0;
   for (int a = 0; a < graph.size(); ++a) left += graph.degree(a);
   for (int a = 0; a < kClique; ++a)
@@ -56,23 +56,46 @@ TEST(EdgeSupport, CliquesOfTheSizeLoseNoEdgeAndOthersDo) {
   EXPECT_LT(left, 2 * kClique * kClique);
 }
 
-/// Two triangles share an edge; without their edges at one node, the others there support nothing.
+/// Two triangles share an edge; without their edges at one node, the others there support nothing. Each node has a clique of its
+/// own besides, so that none is left out for its few edges.
 TEST(EdgeSupport, EdgesThatAreGoneSupportNoLaterBlock) {
   constexpr int kNode = 1000;  // in another block than 0 and 1
   BitGraph graph = testing::graph_of(1200, {{0, 1}, {0, kNode}, {1, kNode}, {0, kNode + 1}, {1, kNode + 1}});
+  int own = 100;
+  for (const int node : {0, 1, kNode, kNode + 1}) {
+    const Indices clique{node, own, own + 1, own + 2, own + 3};
+    for (const int a : clique)
+      for (const int b : clique)
+        if (a < b) graph.connect(a, b);
+    own += 4;
+  }
   ASSERT_EQ(support(graph, 0, 1), 2);
-  remove_edges_below_support(graph, {kNode}, 2);
+  EdgeSupport edges(graph);
+  edges.remove_below(2, {kNode});
   EXPECT_FALSE(graph.is_edge(kNode, 0) || graph.is_edge(1, kNode));
   EXPECT_TRUE(graph.is_edge(0, 1) && graph.is_edge(0, kNode + 1));
-  remove_edges_below_support(graph, {1}, 2);
+  edges.remove_below(2, {1});
   EXPECT_FALSE(graph.is_edge(0, 1));
+}
+
+/// A tail has ever fewer edges once its end is gone: all of it goes, though no node of it is given, and the clique stays.
+TEST(EdgeSupport, NodesOfFewEdgesLoseThemAll) {
+  constexpr int kClique = 5, kEnd = 700;
+  BitGraph graph(kEnd + 1);
+  for (int a = 0; a < kClique; ++a)
+    for (int b = 0; b < a; ++b) graph.connect(a, b);
+  for (int node = kClique; node <= kEnd; ++node)
+    for (int other = std::max(node - 3, kClique - 1); other < node; ++other) graph.connect(node, other);
+  ASSERT_EQ(graph.degree(300), 6);
+  EdgeSupport(graph).remove_below(kClique - 2, {0});
+  for (int a = 0; a <= kEnd; ++a) EXPECT_EQ(graph.degree(a), a < kClique ? kClique - 1 : 0) << a;
 }
 
 TEST(EdgeSupport, OfNoNodesNothing) {
   BitGraph graph(0);
-  remove_edges_below_support(graph, {}, 5);
+  EdgeSupport(graph).remove_below(5, {});
   BitGraph pair = testing::graph_of(2, {{0, 1}});
-  remove_edges_below_support(pair, {}, 5);
+  EdgeSupport(pair).remove_below(5, {});
   EXPECT_TRUE(pair.is_edge(0, 1));
 }
 
