@@ -7,8 +7,9 @@
 namespace corral {
 namespace {
 
-/// The nodes that are left, by degree: those of one degree stand together. Where a node is an edge with more than half of them, all but the
-/// others lose an edge: a degree is a key less the number of such nodes, and `first[key]` is where those of a key begin.
+/// The nodes that are left, by degree: those of one degree stand together. Where the node removed has an edge with more than half of
+/// them, every node left counts as one that lost an edge, and the others get it back: a degree is a key less the number of such
+/// removals, and `first[key]` is where the nodes of a key begin.
 class Peeling {
  public:
   explicit Peeling(const BitGraph& graph)
@@ -82,8 +83,8 @@ class Peeling {
 
   const BitGraph& graph_;
   Indices keys_, order_, places_, first_;
-  std::vector<BitGraph::Word> left_;  ///< a bit for each node
-  int removed_ = 0, lost_by_all_ = 0;
+  std::vector<BitGraph::Word> left_;   ///< a bit for each node
+  int removed_ = 0, lost_by_all_ = 0;  ///< nodes; edges
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace corral {
 /// In the order of removal (degeneracy order) a node has at most as many later neighbours as its number says, and numbers
 /// never fall. A clique of s nodes lies in the (s-1)-core.
 /// Source    [batagelj2003algorithm].
-/// Cost      O(M^2 / 64 + edges).
+/// Cost      O(M^2 / 64 + edges); of a node with more than half of those left, the pairs that are none instead.
 struct CoreNumbers {
   Indices numbers;
   Indices order;  ///< the nodes as they are removed

@@ -5,8 +5,8 @@
 
 namespace corral {
 
-/// Removes edges from a graph that are in no clique of s nodes. The support of an edge is the number of common neighbours of its ends, that
-/// is, of triangles that it is in: in such a clique every edge has s - 2 or more, and every node one edge more than that.
+/// Removes edges of a graph that are in no clique of s nodes. The support of an edge is the number of common neighbours of its
+/// ends, that is, of triangles that it is in: in such a clique every edge has s - 2 or more, and every node s - 1 edges.
 /// Source    [cohen2008trusses], one pass.
 /// Cost      O(M edges / 64) time, in blocks (BitGraph::NodeBlock).
 class EdgeSupport {
@@ -17,8 +17,8 @@ class EdgeSupport {
   /// Bytes for a graph of so many nodes.
   static double memory(int nodes);
 
-  /// Removes all edges of nodes that have at most `least`, until none is left; and those whose support is less than
-  /// `least`, from the given nodes, ascending, to nodes of smaller number. Removed edges do not support those of later blocks.
+  /// Removes all edges of nodes that have no more than `least`, until no such node is left; and from the given nodes, ascending,
+  /// to those of smaller number the edges whose support is less than `least`. Removed edges do not support those of later blocks.
   void remove_below(int least, const Indices& nodes);
 
  private:

@@ -45,9 +45,8 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_st
 
 double MaxCliqueSearch::memory(int nodes) {
   // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
-  return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) +
-         EdgeSupport::memory(nodes) + 2 * MissingEdges::memory(nodes) +
-         2.5 * BitGraph::memory(nodes) + 4096;
+  return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) + EdgeSupport::memory(nodes) +
+         2 * MissingEdges::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
 }
 
 int MaxCliqueSearch::size_of_first() const {
