@@ -11,6 +11,8 @@
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"
 #include "apps/runtime/workers.h"
+#include "apps/study/find_dataset.h"
+#include "apps/study/specification.h"
 #include "io/disk/file.h"
 
 namespace corral {
@@ -44,10 +46,17 @@ void check_experiments(std::vector<std::string>& names) {
   }
 }
 
+/// Throws IoError before the first study runs.
+void check_datasets(const ReproduceSettings& settings) {
+  for (const std::string& name : settings.experiments)
+    find_dataset(settings.data, read_experiment(name).info.dataset, name);
+}
+
 int run(Settings settings) {
   if (settings.jobs && (*settings.jobs < 1 || *settings.jobs > 256)) throw UsageError("--jobs: expected 1 .. 256");
   settings.reproduce.jobs = settings.jobs.value_or(0);
   check_experiments(settings.reproduce.experiments);
+  check_datasets(settings.reproduce);
   settings.reproduce.command_line = command_line(settings);
   const ClaimBook book = settings.claims.empty() ? built_in_claims() : read_claims(settings.claims);
   const std::vector<OpenPoint> points =

@@ -128,5 +128,13 @@ TEST_F(Reproduce, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(bad.err, HasSubstr("readings.toml"));
 }
 
+TEST_F(Reproduce, NamesAMissingDataSetBeforeItRunsTheOthers) {
+  const Outcome outcome =
+      place_.corral("reproduce noise overlap --data data --readings readings.toml --claims claims.toml -o run");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("which the experiment overlap uses"));
+  EXPECT_FALSE(std::filesystem::exists(place_ / "run"));
+}
+
 }  // namespace
 }  // namespace corral
