@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/register_pair.h"
 

@@ -8,15 +8,9 @@
 #include <numeric>
 #include <set>
 
-#include "apps/runtime/embedded_files.h"
-#include "apps/runtime/text_table.h"
-#include "io/text/toml_file.h"
 #include "kernel/error.h"
-#include "kernel/number_text.h"
 
 namespace corral {
-
-const EmbeddedFiles& embedded_confidence();
 
 namespace {
 
@@ -25,13 +19,9 @@ constexpr int kMostSweeps = 20000, kFewest = 10;
 
 double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
-double term(const ConfidenceModel& model, const ConfidenceSignals& signals, std::size_t k) {
-  return model.deviation[k] > 0 ? model.weight[k] * (signals[k] - model.mean[k]) / model.deviation[k] : 0;
-}
-
 double logit(const ConfidenceModel& model, const ConfidenceSignals& signals) {
   double sum = model.bias;
-  for (std::size_t k = 0; k < kSignals; ++k) sum += term(model, signals, k);
+  for (std::size_t k = 0; k < kSignals; ++k) sum += model.term(signals, k);
   return sum;
 }
 
@@ -144,46 +134,11 @@ std::vector<JudgedPose> without(const std::vector<JudgedPose>& poses, const std:
   return others;
 }
 
-std::string list(const ConfidenceSignals& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "[" : ", ") + to_text(value);
-  return text + "]";
-}
-
-std::string table_text(const std::string& name, const ConfidenceModel& model) {
-  return "\n[" + name + "]\npairs = " + std::to_string(model.pairs) + "\ngroups = " + std::to_string(model.groups) +
-         "\nright = " + std::to_string(model.right) + "\nmean = " + list(model.mean) +
-         "\ndeviation = " + list(model.deviation) + "\nlow = " + list(model.low) + "\nhigh = " + list(model.high) +
-         "\nweight = " + list(model.weight) + "\nbias = " + to_text(model.bias) + "\nslope = " + to_text(model.slope) +
-         "\nshift = " + to_text(model.shift) + "\n";
-}
-
-ConfidenceModel read_model(const TomlTable& root, const std::string& name) {
-  const auto table = root.table(name);
-  if (!table) root.fail(name, "expected a table [" + name + "]");
-  table->only({"pairs", "groups", "right", "mean", "deviation", "low", "high", "weight", "bias", "slope", "shift"});
-  const auto values = [&](const char* key) {
-    const std::vector<double> found = table->numbers(key);
-    if (found.size() != kSignals) table->fail(key, "expected " + std::to_string(kSignals) + " numbers");
-    ConfidenceSignals signals;
-    std::copy(found.begin(), found.end(), signals.begin());
-    return signals;
-  };
-  const auto value = [&](const char* key) {
-    const auto found = table->number(key);
-    if (!found) table->fail(key, "expected a number");
-    return *found;
-  };
-  ConfidenceModel model;
-  model.mean = values("mean"), model.deviation = values("deviation"), model.weight = values("weight");
-  model.low = values("low"), model.high = values("high");
-  model.bias = value("bias"), model.slope = value("slope"), model.shift = value("shift");
-  model.pairs = static_cast<int>(value("pairs")), model.groups = static_cast<int>(value("groups"));
-  model.right = static_cast<int>(value("right"));
-  return model;
-}
-
 }  // namespace
+
+double ConfidenceModel::term(const ConfidenceSignals& signals, std::size_t k) const {
+  return deviation[k] > 0 ? weight[k] * (signals[k] - mean[k]) / deviation[k] : 0;
+}
 
 double ConfidenceModel::probability(const ConfidenceSignals& signals) const {
   return logistic(slope * logit(*this, signals) + shift);
@@ -199,27 +154,17 @@ const char* verdict(double probability) {
   return probability >= kTrusted ? "trust it" : probability >= kDoubted ? "look at it" : "do not use it";
 }
 
-std::string confidence_sentence(const ConfidenceModel& model, const ConfidenceSignals& signals) {
-  const double probability = model.probability(signals);
-  const std::size_t beyond = model.outside(signals);
-  return std::string(verdict(probability)) + ": probability " + fixed(probability, 3) +
-         " that it registers the pair, as on the " + std::to_string(model.pairs) +
-         " pairs that this was learned from; most for it: " + kSignalNames[model.strongest(signals)] +
-         ", least: " + kSignalNames[model.weakest(signals)] +
-         (beyond < kSignals ? std::string("; outside of what those pairs had: ") + kSignalNames[beyond] : "");
-}
-
 std::size_t ConfidenceModel::weakest(const ConfidenceSignals& signals) const {
   std::size_t found = 0;
   for (std::size_t k = 1; k < kSignals; ++k)
-    if (term(*this, signals, k) < term(*this, signals, found)) found = k;
+    if (term(signals, k) < term(signals, found)) found = k;
   return found;
 }
 
 std::size_t ConfidenceModel::strongest(const ConfidenceSignals& signals) const {
   std::size_t found = 0;
   for (std::size_t k = 1; k < kSignals; ++k)
-    if (term(*this, signals, k) > term(*this, signals, found)) found = k;
+    if (term(signals, k) > term(signals, found)) found = k;
   return found;
 }
 
@@ -279,26 +224,6 @@ Reliability reliability(const std::vector<double>& probabilities, const std::vec
     found.calibration_error += std::abs(sum) / static_cast<double>(std::max<std::size_t>(poses.size(), 1));
   }
   return found;
-}
-
-std::string confidence_text(const ConfidenceModels& models) {
-  std::string names;
-  for (const char* name : kSignalNames) names += (names.empty() ? "" : ", ") + std::string(name);
-  return "# How probable it is that a pose of 'corral register' is right, by its signals: " + names +
-         ".\n# Written by 'corral calibrate'.\n" + table_text("surfaces", models.surfaces) +
-         table_text("table", models.table);
-}
-
-ConfidenceModels parse_confidence(const std::string& path, const std::string& text) {
-  const TomlTable root = TomlTable::parse(path, text);
-  root.only({"surfaces", "table"});
-  return {read_model(root, "surfaces"), read_model(root, "table")};
-}
-
-const ConfidenceModels& built_in_confidence() {
-  static const ConfidenceModels models =
-      parse_confidence("confidence.toml", embedded_confidence().at("confidence.toml"));
-  return models;
 }
 
 }  // namespace corral

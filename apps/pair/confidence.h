@@ -17,6 +17,7 @@ struct ConfidenceModel {
   double bias = 0, slope = 1, shift = 0;            ///< b_0; the calibration
   int pairs = 0, groups = 0, right = 0;             ///< that it was fitted to
 
+  double term(const ConfidenceSignals& signals, std::size_t k) const;  ///< b_k z_k
   double probability(const ConfidenceSignals& signals) const;
 
   /// The first signal beyond those of the poses that the model was fitted to; kSignals if there is none.
@@ -64,16 +65,5 @@ struct Reliability {
   int kept = 0, kept_right = 0;  ///< poses with p >= 0.9
 };
 Reliability reliability(const std::vector<double>& probabilities, const std::vector<JudgedPose>& poses);
-
-/// The verdict and the probability with what weighs most for and against it, and what is beyond the poses that the model was
-/// fitted to, in words.
-std::string confidence_sentence(const ConfidenceModel& model, const ConfidenceSignals& signals);
-
-/// confidence.toml, and back. Throws IoError naming file and key.
-std::string confidence_text(const ConfidenceModels& models);
-ConfidenceModels parse_confidence(const std::string& path, const std::string& text);
-
-/// That of paper/confidence.toml, which is compiled into the program.
-const ConfidenceModels& built_in_confidence();
 
 }  // namespace corral

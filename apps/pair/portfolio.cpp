@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 #include "apps/runtime/stopwatch.h"
 #include "refine/refine_rigid.h"
 

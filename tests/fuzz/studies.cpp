@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a study is made from and what it leaves: the readers of apps/.
 #include "apps/claims/claim_file.h"
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 #include "apps/pair/external_method.h"
 #include "apps/pair/foreign_answer.h"
 #include "apps/results/study_folder.h"

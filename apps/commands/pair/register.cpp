@@ -4,7 +4,8 @@
 
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
+#include "apps/pair/confidence_words.h"
 #include "apps/pair/evaluate_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/match_report.h"
@@ -189,8 +190,8 @@ int register_two(Settings settings) {
   if (settings.json)
     put("", to_json(found, pair.matches.size(), errors, model));
   else
-    put("", in_words(found, surfaces.has_value()) +
-                (found.signals ? confidence_sentence(model, *found.signals) + "\n" : ""));
+    put("",
+        in_words(found, surfaces.has_value()) + (found.signals ? confidence_words(model, *found.signals) + "\n" : ""));
   return found.poses.empty() || probability < settings.least_confidence ? kPartial : kOk;
 }
 
@@ -229,7 +230,7 @@ void add_register(CLI::App& app, Action& action) {
       "One pr is the mean distance from a vertex to its nearest neighbour. matches: those with a residual of at most 5 pr; a few are\n"
       "enough where the surfaces agree. coverage: how well the surfaces lie on each other, 0 to 1. overlap: share of the source that finds the\n"
       "target within 4 pr. RMS pr: what is left between them. in front: share of points in front of what the other sensor saw.\n"
-      "Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
+      "A pose is right if its mean error is at most 5 pr. Trust it: a probability of 0.9 and more. Do not use it: below 0.5.\n"
       "Examples:\n"
       "  corral register scan1.ply scan2.ply -o pose.txt --apply moved.ply --picture both.png\n"
       "  corral register --matches matches.csv -o pose.txt");

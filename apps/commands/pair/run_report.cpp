@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "apps/commands/pair/run_report.h"
 
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
+#include "apps/pair/confidence_words.h"
 #include "apps/pair/match_report.h"
 #include "apps/pair/methods.h"
 #include "apps/pair/report_pair.h"
@@ -140,10 +141,10 @@ std::string in_words(const PairRun& run, const RunSettings& settings) {
     text += "Errors are over the source points of the correct matches, the RMSE over those of all matches.\n";
   if (const std::optional<std::size_t> best = most_probable(run)) {
     const MethodRecord& record = run.records[*best];
-    text += "best pose: " + record.method + ", " +
-            (run.signals[*best] ? confidence_sentence(built_in_confidence().table, *run.signals[*best])
+    text += "best pose: " + record.method + "; " +
+            (run.signals[*best] ? confidence_words(built_in_confidence().table, *run.signals[*best])
                                 : verdict(*record.confidence) + (": probability " + fixed(*record.confidence, 3))) +
-            ".\n";
+            "\n";
   }
   if (settings.explain) text += "\n";
   for (const Explanation& explanation : run.explanations) text += explanation.method + ": " + explanation.text + ".\n";

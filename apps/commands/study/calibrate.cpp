@@ -9,7 +9,7 @@
 
 #include "apps/commands/command_files.h"
 #include "apps/commands/command_options.h"
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 #include "apps/pair/load_pair.h"
 #include "apps/runtime/output.h"
 #include "apps/runtime/progress.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <pybind11/stl.h>
 
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 #include "apps/pair/load_pair.h"
 #include "apps/pair/match_pair.h"
 #include "apps/pair/match_report.h"

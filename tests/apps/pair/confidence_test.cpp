@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "apps/pair/confidence.h"
+#include "apps/pair/confidence_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

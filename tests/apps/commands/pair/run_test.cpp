@@ -84,10 +84,10 @@ TEST(Run, TheTableHasARowPerMethod) {
   EXPECT_THAT(outcome.err, AllOf(StartsWith("source: 2562 points"), HasSubstr("\ntarget: "), HasSubstr("\npair: pr ")));
   EXPECT_THAT(outcome.out,
               AllOf(StartsWith("model.ply -> copy.ply: "), HasSubstr("correct within 4.0 pr"), HasSubstr("precision")));
-  EXPECT_EQ(lines_in(outcome.out), 5 + groupers().size()) << "and the best pose";
+  EXPECT_EQ(lines_in(outcome.out), 7 + groupers().size()) << "the best pose, and what speaks for it and against it";
   EXPECT_THAT(outcome.out, HasSubstr("\nbest pose: "));
   for (const std::string& name : method_names()) EXPECT_THAT(outcome.out, HasSubstr("\n" + name + " "));
-  EXPECT_EQ(lines_in(place.corral("run model.ply copy.ply").out), 3 + groupers().size());
+  EXPECT_EQ(lines_in(place.corral("run model.ply copy.ply").out), 5 + groupers().size());
 }
 
 TEST(Run, DenseRefinementHasATableOfItsOwn) {
@@ -112,7 +112,7 @@ TEST(Run, DenseRefinementHasATableOfItsOwn) {
   EXPECT_EQ(lines_in(place.text("out/dense.csv")), 3U);
   const Outcome table = place.corral("run model.ply copy.ply --methods gc --dense");
   EXPECT_THAT(table.out, HasSubstr("\ndense refinement, points to planes:\ngrouper  overlap before"));
-  EXPECT_EQ(lines_in(table.out), 8U);
+  EXPECT_EQ(lines_in(table.out), 10U);
   ASSERT_EQ(place.corral("run model.ply copy.ply --methods gc -o out").status, 0);
   EXPECT_FALSE(std::filesystem::exists(place / "out/dense.csv")) << "left by an earlier run";
 }

@@ -42,8 +42,8 @@ TEST(Calibrate, LearnsFromTablesWhichPosesToTrust) {
   EXPECT_GT(json[0]["area"], 0.95);
   EXPECT_EQ(json[1]["set"], "tables");
   const std::string call = "register --confidence confidence.toml --matches tables/";
-  EXPECT_THAT(place.corral(call + "p0.csv").out, HasSubstr("trust it: probability"));
-  EXPECT_THAT(place.corral(call + "p1.csv").out, HasSubstr("do not use it: probability"));
+  EXPECT_THAT(place.corral(call + "p0.csv").out, HasSubstr("trust it: it is right"));
+  EXPECT_THAT(place.corral(call + "p1.csv").out, HasSubstr("do not use it: it is right"));
   const auto in_json = place.corral(call + "p1.csv --json").json()["confidence"];
   EXPECT_LT(in_json["probability"], 0.5);
   EXPECT_EQ(in_json["verdict"], "do not use it");
