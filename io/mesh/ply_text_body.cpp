@@ -64,7 +64,7 @@ class TextBody : public PlyBody {
     std::size_t more = 1;
     while (!reader_.take().empty()) ++more;
     const std::size_t found = reader_.fields().size();
-    fail("found " + std::to_string(found) + " values, expected " + std::to_string(found - more));
+    reader_.fail("found " + std::to_string(found) + " values, expected " + std::to_string(found - more));
   }
 
   LineReader& reader_;
