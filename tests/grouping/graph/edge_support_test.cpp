@@ -56,19 +56,21 @@ TEST(EdgeSupport, CliquesOfTheSizeLoseNoEdgeAndOthersDo) {
   EXPECT_LT(left, 2 * kClique * kClique);
 }
 
-/// Two triangles share an edge; without their edges at one node, the others there support nothing. Each node has a clique of its
-/// own besides, so that none is left out for its few edges.
+/// With a clique of four new nodes: so it has more than two edges, of support 3.
+void give_clique(int node, int& next, BitGraph& graph) {
+  const Indices clique{node, next, next + 1, next + 2, next + 3};
+  for (const int a : clique)
+    for (const int b : clique)
+      if (a < b) graph.connect(a, b);
+  next += 4;
+}
+
+/// Two triangles share an edge; without their edges at one node, the others there support nothing.
 TEST(EdgeSupport, EdgesThatAreGoneSupportNoLaterBlock) {
   constexpr int kNode = 1000;  // in another block than 0 and 1
   BitGraph graph = testing::graph_of(1200, {{0, 1}, {0, kNode}, {1, kNode}, {0, kNode + 1}, {1, kNode + 1}});
-  int own = 100;
-  for (const int node : {0, 1, kNode, kNode + 1}) {
-    const Indices clique{node, own, own + 1, own + 2, own + 3};
-    for (const int a : clique)
-      for (const int b : clique)
-        if (a < b) graph.connect(a, b);
-    own += 4;
-  }
+  int next = 100;
+  for (const int node : {0, 1, kNode, kNode + 1}) give_clique(node, next, graph);
   ASSERT_EQ(support(graph, 0, 1), 2);
   EdgeSupport edges(graph);
   edges.remove_below(2, {kNode});
@@ -78,17 +80,31 @@ TEST(EdgeSupport, EdgesThatAreGoneSupportNoLaterBlock) {
   EXPECT_FALSE(graph.is_edge(0, 1));
 }
 
+TEST(EdgeSupport, ANodeThatHasLostItsEdgesLosesTheRest) {
+  constexpr int kNode = 600;
+  BitGraph graph = testing::graph_of(1200, {{0, kNode}, {1, kNode}, {2, kNode}, {kNode, 1000}, {kNode, 1001}});
+  int next = 100;
+  for (const int node : {0, 1, 2, 1000, 1001}) give_clique(node, next, graph);
+  EdgeSupport edges(graph);
+  edges.remove_below(2, {kNode});
+  EXPECT_EQ(graph.degree(kNode), 2) << "to nodes of larger number";
+  edges.remove_below(2, {1000});
+  EXPECT_EQ(graph.degree(kNode), 0);
+  EXPECT_EQ(graph.degree(1000), 4);
+}
+
 /// A tail has ever fewer edges once its end is gone: all of it goes, though no node of it is given, and the clique stays.
 TEST(EdgeSupport, NodesOfFewEdgesLoseThemAll) {
   constexpr int kClique = 5, kEnd = 700;
-  BitGraph graph(kEnd + 1);
+  BitGraph graph(kEnd + 3);
+  graph.connect(kEnd + 1, kEnd + 2);
   for (int a = 0; a < kClique; ++a)
     for (int b = 0; b < a; ++b) graph.connect(a, b);
   for (int node = kClique; node <= kEnd; ++node)
     for (int other = std::max(node - 3, kClique - 1); other < node; ++other) graph.connect(node, other);
   ASSERT_EQ(graph.degree(300), 6);
   EdgeSupport(graph).remove_below(kClique - 2, {0});
-  for (int a = 0; a <= kEnd; ++a) EXPECT_EQ(graph.degree(a), a < kClique ? kClique - 1 : 0) << a;
+  for (int a = 0; a < graph.size(); ++a) EXPECT_EQ(graph.degree(a), a < kClique ? kClique - 1 : 0) << a;
 }
 
 TEST(EdgeSupport, OfNoNodesNothing) {
