@@ -11,7 +11,6 @@
 #include "kernel/error.h"
 
 namespace corral {
-
 namespace {
 
 constexpr double kRidge = 1, kRest = 1e-9;

@@ -23,8 +23,11 @@ std::string signal_words(std::size_t signal, double value) {
       return percent(1 / (1 + std::exp(-value))) + " of the matches agree with it";
     case 2:
       return fixed(std::exp(value), 1) + " times as many matches agree with it as with any other pose";
-    case 3:
-      return "the matches hold it to within " + fixed(std::exp(-value) - 0.01, 1) + " pr";
+    case 3: {
+      const double uncertainty_pr = std::exp(-value) - 0.01;
+      return uncertainty_pr > 99 ? "the matches do not hold it in place"
+                                 : "the matches hold it to within " + fixed(uncertainty_pr, 1) + " pr";
+    }
     case 4:
       return percent(value) + " of the groupers find it";
     case 5:

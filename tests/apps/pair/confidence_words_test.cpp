@@ -41,6 +41,7 @@ TEST(ConfidenceWords, GiveTheNumbersThatTheSignalsWereMadeFrom) {
   EXPECT_EQ(words[7], "3 % of the points are in front of what the other sensor saw");
   EXPECT_EQ(words[8], "the dense refinement moved it by 1.2 pr");
   EXPECT_EQ(signal_words(0, std::log(2.0)), "1 match agrees with it");
+  EXPECT_EQ(signal_words(3, -std::log(100.01)), "the matches do not hold it in place") << "fewer than four";
 }
 
 TEST(ConfidenceWords, SayNothingForAPoseThatNothingSpeaksFor) {
