@@ -25,7 +25,10 @@ std::vector<std::string> methods_of(const PanelFigure& figure) {
   return methods;
 }
 
-bool has_intervals(const Panel& panel) {
+constexpr std::size_t kMostWithBars = 9;  // series whose bars can be told apart: seven groupers and two bounds
+
+bool draws_intervals(const Panel& panel) {
+  if (panel.series.size() > kMostWithBars) return false;
   for (const PanelSeries& series : panel.series)
     for (const PanelValue& value : series.values)
       if (value.low || value.high) return true;
@@ -103,7 +106,7 @@ std::string plot_text(const Panel& panel) {
   std::vector<std::string> methods;
   for (const PanelSeries& series : panel.series) methods.push_back(series.method);
   const auto styles = method_styles(methods);
-  const bool intervals = has_intervals(panel);
+  const bool intervals = draws_intervals(panel);
   std::string bars, lines;
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
     const MethodStyle& style = styles.at(panel.series[i].method);

@@ -99,6 +99,16 @@ TEST(Panel, TheScriptReadsItsOwnFileAndQuotesWhatItIsTold) {
   EXPECT_EQ(tics_text({"50 %", ""}, {1, 2.5}), "('50 %%' 1, '' 2.5)");  // labels of tics are formats
 }
 
+TEST(Panel, BarsOfMoreThanNineSeriesAreNotDrawn) {
+  Panel panel = small_panel();
+  while (panel.series.size() < 9) panel.series.push_back(panel.series.front());
+  for (std::size_t i = 0; i < 9; ++i) panel.series[i].method = "m" + std::to_string(i);
+  EXPECT_THAT(panel_script(figure_of(panel)), HasSubstr("with vectors nohead"));
+  panel.series.push_back(panel.series.front());
+  panel.series.back().method = "m9";
+  EXPECT_THAT(panel_script(figure_of(panel)), Not(HasSubstr("with vectors")));
+}
+
 TEST(Panel, OneIsAColumnWideAndTwoArePageWideUnderOneLegend) {
   const std::string one = panel_script(figure_of(small_panel()));
   EXPECT_THAT(one, HasSubstr("size 8.500cm,"));
