@@ -65,8 +65,7 @@ class Crowd {
       }
       extents[axis] = largest(extent);
     }
-    std::fill_n(&near[0][static_cast<std::size_t>(count)], room - static_cast<std::size_t>(count),
-                std::numeric_limits<float>::infinity());
+    std::fill_n(near[0].data() + count, room - static_cast<std::size_t>(count), std::numeric_limits<float>::infinity());
     extent_ = std::max(std::max(extents[0], extents[1]), extents[2]);
   }
 
