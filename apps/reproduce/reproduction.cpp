@@ -30,6 +30,12 @@ std::vector<int> decided_by(std::size_t point, const Reproduction& of) {
   return claims;
 }
 
+int most_holding(const std::vector<CombinationScore>& judged) {
+  int most = 0;
+  for (const CombinationScore& score : judged) most = std::max(most, score.holds);
+  return most;
+}
+
 void find_bounds(const std::vector<CombinationScore>& judged, Reproduction& of) {
   const std::size_t claims = of.claims.size();
   of.combinations = static_cast<int>(judged.size());
@@ -86,10 +92,12 @@ Reproduction reproduce(const std::vector<OpenPoint>& points, const ClaimBook& bo
   made.found = judged(made.steps.back().score.combination);
   std::vector<Combination> seen;
   for (const CombinationScore& score : judge.seen(Half::Chosen)) seen.push_back(score.combination);
-  judge.score_all(seen, Half::All);
+  for (const Half half : {Half::All, Half::HeldOut}) judge.score_all(seen, half);
   for (std::size_t claim = 0; claim < made.claims.size(); ++claim) made.classes.push_back(class_of(made.alone, claim));
   for (std::size_t point = 0; point < made.points.size(); ++point) made.decides.push_back(decided_by(point, made));
   find_bounds(judge.seen(Half::All), made);
+  made.most = most_holding(judge.seen(Half::All)), made.most_chosen = most_holding(judge.seen(Half::Chosen));
+  made.most_held_out = most_holding(judge.seen(Half::HeldOut));
   return made;
 }
 

@@ -35,7 +35,8 @@ struct Reproduction {
   std::vector<bool> is_bound;             ///< of each claim: whether it holds in any combination that was judged
   std::vector<std::pair<int, int>>
       never_together;    ///< claims that hold in some such combination each, but in none both
-  int combinations = 0;  ///< so many were judged on all pairs
+  int combinations = 0;  ///< so many were judged
+  int most = 0, most_chosen = 0, most_held_out = 0;  ///< statements that one of them holds on all pairs, on each half
 };
 
 /// Judges the readings alone and searches their combinations.

@@ -136,6 +136,7 @@ Json reproduction_json(const Reproduction& of) {
           {"combination", to_text(of.points, of.found.all.combination)},
           {"text", counts_json(of.text)},
           {"found", counts_json(of.found)},
+          {"most_of_any", {{"chosen", of.most_chosen}, {"held_out", of.most_held_out}, {"all", of.most}}},
           {"combinations", of.combinations},
           {"hold_in_some_combination", ids_json(of, bound_claims(of))},
           {"never_together", excluded},
@@ -158,6 +159,8 @@ std::string reproduction_text(const Reproduction& of) {
        {std::pair<const char*, const JudgedCombination*>("text", &of.text), {"found", &of.found}})
     counts.add({name, std::to_string(judged->chosen.holds), std::to_string(judged->held_out.holds),
                 std::to_string(judged->all.holds)});
+  counts.add(
+      {"most of any", std::to_string(of.most_chosen), std::to_string(of.most_held_out), std::to_string(of.most)});
   text += counts.str() + "\n";
   text += std::to_string(bound_claims(of).size()) + " statements hold in at least one of " +
           std::to_string(of.combinations) + " combinations, " + std::to_string(of.never_together.size()) +

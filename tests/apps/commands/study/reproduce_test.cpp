@@ -95,6 +95,9 @@ TEST_F(Reproduce, SaysWhatEachReadingDoes) {
             json["statements"][0]["readings"]["gc=clique"]["margin"]);
   EXPECT_NE(json["statements"][0]["readings"]["text"]["margin"],
             json["statements"][0]["readings"]["radius=two"]["margin"]);
+  for (const char* pairs : {"chosen", "held_out", "all"})
+    EXPECT_GE(json["most_of_any"][pairs], std::max(json["text"][pairs], json["found"][pairs])) << pairs;
+  EXPECT_THAT(place_.text("run/reproduction.txt"), HasSubstr("\nmost of any "));
   EXPECT_THAT(place_.text("run/matrix.csv"), HasSubstr("statement,class,text,gc=clique,radius=two,found"));
   EXPECT_TRUE(std::filesystem::exists(place_ / "run/studies/text/b3r/units"));
   EXPECT_TRUE(std::filesystem::exists(place_ / "run/studies/radius-two/b3r/units"));
