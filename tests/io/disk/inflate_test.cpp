@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <cstdint>
 #include <string>
 
 #include "io/mesh/mesh_file.h"
@@ -27,7 +28,7 @@ std::string refusal(const std::string& content) {
 
 TEST(Inflate, GivesBackWhatWasCompressed) {
   std::string text;
-  for (int i = 0; i < 100000; ++i) text += std::to_string(i * i % 977) + "\n";
+  for (std::int64_t i = 0; i < 100000; ++i) text += std::to_string(i * i % 977) + "\n";
   for (const std::string& content : {std::string("a"), text, std::string(5000000, 'x')}) {
     EXPECT_EQ(inflated("", gzipped(content)), content);
     EXPECT_EQ(inflated("", gzipped(content) + gzipped("more")), content + "more") << "members follow each other";
