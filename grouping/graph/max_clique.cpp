@@ -44,9 +44,11 @@ MaxCliqueSearch::MaxCliqueSearch(const BitGraph& graph, std::int64_t work_per_st
 }
 
 double MaxCliqueSearch::memory(int nodes) {
-  // Peeling, lists, the graph in another order, that of the candidates, and a level for each node of a clique.
-  return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) + EdgeSupport::memory(nodes) +
-         2 * MissingEdges::memory(nodes) + 2.5 * BitGraph::memory(nodes) + 4096;
+  // Peeling, lists, the graph in another order, that of the candidates, a level for each node of a clique, and in large graphs
+  // a block of edges.
+  return 500.0 * nodes + InducedSubgraphs::memory(nodes) + CommonNeighbors::memory(nodes) +
+         (nodes < kNodesOfLarge ? 0 : EdgeSupport::memory(nodes)) + 2 * MissingEdges::memory(nodes) +
+         2.5 * BitGraph::memory(nodes) + 4096;
 }
 
 int MaxCliqueSearch::size_of_first() const {
