@@ -25,8 +25,8 @@ std::string signal_words(std::size_t signal, double value) {
       return fixed(std::exp(value), 1) + " times as many matches agree with it as with any other pose";
     case 3: {
       const double uncertainty_pr = std::exp(-value) - 0.01;
-      return uncertainty_pr > 99 ? "the matches do not hold it in place"
-                                 : "the matches hold it to within " + fixed(uncertainty_pr, 1) + " pr";
+      return uncertainty_pr > 99 ? "too few matches fix it"
+                                 : "the matches fix it to within " + fixed(uncertainty_pr, 1) + " pr";
     }
     case 4:
       return percent(value) + " of the groupers find it";
@@ -47,7 +47,7 @@ std::string confidence_words(const ConfidenceModel& model, const ConfidenceSigna
   const std::size_t best = model.strongest(signals), worst = model.weakest(signals), beyond = model.outside(signals);
   std::string text = std::string(verdict(probability)) + ": it is right with a probability of " +
                      fixed(probability, 3) + ", as learned from " + std::to_string(model.pairs) +
-                     " pairs of a known pose";
+                     " pairs with a known pose";
   if (model.term(signals, best) > 0) text += "\n  for it: " + words(best);
   if (model.term(signals, worst) < 0) text += "\n  against it: " + words(worst);
   if (beyond < kSignals) text += "\n  unlike those pairs: " + words(beyond);

@@ -17,8 +17,8 @@ class EdgeSupport {
   /// Bytes for a graph of so many nodes.
   static double memory(int nodes);
 
-  /// Removes all edges of nodes that have no more than `least`, until no such node is left; and from the given nodes, ascending,
-  /// to those of smaller number the edges whose support is less than `least`. Removed edges do not support those of later blocks.
+  /// Removes, from the given nodes, ascending, to those of smaller number, the edges whose support is less than `least`; before
+  /// each block, all edges of nodes that have no more than `least`. Removed edges do not support those of later blocks.
   void remove_below(int least, const Indices& nodes);
 
  private:
