@@ -2,6 +2,8 @@
 #include "kernel/elementary.h"
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace corral {
 
@@ -20,6 +22,14 @@ struct Series {
 };
 constexpr Series kSeries;
 
+/// 2^n, of a normal number.
+double power_of_two(int n) {
+  const std::uint64_t bits = static_cast<std::uint64_t>(n + 1023) << 52;
+  double power;
+  std::memcpy(&power, &bits, sizeof power);
+  return power;
+}
+
 }  // namespace
 
 /// e^x = 2^n e^r with |r| <= ln 2 / 2.
@@ -29,7 +39,7 @@ double exponential(double x) {
   const double n = std::floor(x * 1.4426950408889634 + 0.5), r = (x - n * kLn2High) - n * kLn2Low;
   double sum = 0;
   for (int k = kExponentialTerms; k >= 0; --k) sum = kSeries.exponential[k] + sum * r;
-  return std::ldexp(sum, static_cast<int>(n));
+  return sum * power_of_two(static_cast<int>(n));
 }
 
 /// Newton's iteration from above, until it rests.
@@ -49,13 +59,13 @@ double cube_root(double x) {
   int exponent = 0;
   double number = std::frexp(x, &exponent);
   const int rest = ((exponent % 3) + 3) % 3;
-  number = std::ldexp(number, rest);
+  number *= power_of_two(rest);
   double root = 0.65 + 0.25 * number;
   for (int round = 0; round < 4; ++round) {
     const double cube = root * root * root;
     root = root * ((cube + 2 * number) / (2 * cube + number));
   }
-  return std::ldexp(root, (exponent - rest) / 3);
+  return root * power_of_two((exponent - rest) / 3);
 }
 
 /// Half the angle three times, sin(a/2) = sin a / sqrt(2 (1 + cos a)); then the series.

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kTile = 4;
 
-/// The scalar products of four rows with four others, each of `padded` columns.
-HWY_INLINE void multiply_tile(const double* a, const double* b, int columns, double (&products)[kTile][kTile]) {
+/// The scalar products of four rows with four others.
+HWY_INLINE void multiply_tile(const double* a, const double* b, std::size_t columns, double (&products)[kTile][kTile]) {
   Lanes sums[kTile][kTile];
   for (auto& row : sums)
     for (Lanes& entry : row) entry = Lanes::fill(0);
-  for (int k = 0; k < columns; k += kLanes) {
+  for (std::size_t k = 0; k < columns; k += kLanes) {
     Lanes right[kTile];
     for (int j = 0; j < kTile; ++j) right[j] = Lanes::load(b + j * columns + k);
     for (int i = 0; i < kTile; ++i) {
@@ -32,16 +32,11 @@ HWY_INLINE void multiply_tile(const double* a, const double* b, int columns, dou
     for (int j = 0; j < kTile; ++j) products[i][j] = sum(sums[i][j]);
 }
 
-/// Four rows, from `first` on, of matrix matrix, from that column on and where the matrix is not 0; matrix is symmetric, of `rows`
-/// (a multiple of eight) rows.
-HWY_FLATTEN void multiply_strip(const double* matrix, int rows, int first, double* strip) {
-  const double* const left = matrix + static_cast<std::ptrdiff_t>(first) * rows;
+/// Four rows of a matrix, from `first` on, times these and all that follow: strip[i * rows + j].
+HWY_FLATTEN void multiply_strip(const double* matrix, int rows, std::size_t columns, int first, double* strip) {
   for (int j = first; j < rows; j += kTile) {
-    bool is_empty = true;
-    for (int k = 0; k < kTile * kTile; ++k) is_empty &= left[k / kTile * rows + j + k % kTile] == 0;
-    if (is_empty) continue;
     double tile[kTile][kTile];
-    multiply_tile(left, matrix + static_cast<std::ptrdiff_t>(j) * rows, rows, tile);
+    multiply_tile(matrix + first * columns, matrix + j * columns, columns, tile);
     for (int k = 0; k < kTile * kTile; ++k) strip[k / kTile * rows + j + k % kTile] = tile[k / kTile][k % kTile];
   }
 }
@@ -64,60 +59,83 @@ EdgeWeights::EdgeWeights(const BitGraph& graph) : starts_(static_cast<std::size_
   weights_.resize(neighbors_.size());
 }
 
-/// In the order of lanes.
-double EdgeWeights::sum_of_products(int node, const std::vector<double>& factors) const {
+namespace {
+
+/// Of weights[edge] times factors[neighbors[edge]], in the order of lanes.
+double sum_of(const int* neighbors, const double* weights, std::size_t edges, const double* factors) {
   double s[kLanes] = {};
-  for (std::size_t edge = begin(node); edge < end(node); ++edge) {
-    const auto other = static_cast<std::size_t>(neighbors_[edge]);
-    s[other % kLanes] += factors[other] * weights_[edge];
+  for (std::size_t edge = 0; edge < edges; ++edge) {
+    const auto other = static_cast<std::size_t>(neighbors[edge]);
+    s[other % kLanes] += factors[other] * weights[edge];
   }
   return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
 
-PathSums::PathSums(const EdgeWeights& weights) : weights_(weights) {
-  const auto rows = static_cast<std::size_t>(padded(weights.size()));
-  const double edges = static_cast<double>(weights.neighbors_.size());
-  if (weights.size() <= kMostInMatrix && 8 * edges >= 1.0 * weights.size() * weights.size())
-    matrix_.assign(rows * rows, 0.0);
+}  // namespace
+
+double EdgeWeights::sum_of_products(int node, const std::vector<double>& factors) const {
+  const std::size_t first = begin(node);
+  return sum_of(neighbors_.data() + first, weights_.data() + first, end(node) - first, factors.data());
 }
 
-void PathSums::visit(double (*value)(double), const std::function<void(const PathSum&)>& visit) {
-  if (!matrix_.empty()) return multiply_matrix(value, visit);
-  EdgeWeights values = weights_;
-  values.replace_each([&](int, int, double weight) { return value(weight); });
-  std::vector<double> row(static_cast<std::size_t>(values.size()));
-  std::vector<std::size_t> back(values.starts_.begin(), values.starts_.end() - 1);
-  for (int node = 0; node < values.size(); ++node) {
-    values.for_edges(node, [&](int other, double each) { row[static_cast<std::size_t>(other)] = each; });
-    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < values.end(node); ++edge) {
-      const int other = values.neighbors_[edge];
-      visit({node, other, edge, back[static_cast<std::size_t>(other)]++,
-             values.weights_[edge] * values.sum_of_products(other, row)});
-    }
-    values.for_edges(node, [&](int other, double) { row[static_cast<std::size_t>(other)] = 0; });
+PathSums::PathSums(const EdgeWeights& weights)
+    : weights_(weights),
+      place_(static_cast<std::size_t>(weights.size()), -1),
+      columns_(static_cast<std::size_t>(padded(weights.size()))),
+      values_(weights.neighbors_.size()) {
+  if (weights.size() > kMostInMatrix) return;
+  for (int node = 0; node < weights.size(); ++node)
+    if (8 * (weights.end(node) - weights.begin(node)) >= static_cast<std::size_t>(weights.size()))
+      place_[static_cast<std::size_t>(node)] = row_count_++;
+  row_count_ = (row_count_ + kStrip - 1) / kStrip * kStrip;
+  rows_.assign(static_cast<std::size_t>(row_count_) * columns_, 0.0);
+}
+
+double PathSums::sum_of_products(int node, const double* factors) const {
+  const std::size_t first = weights_.begin(node);
+  return sum_of(weights_.neighbors_.data() + first, values_.data() + first, weights_.end(node) - first, factors);
+}
+
+void PathSums::evaluate(double (*value)(double)) {
+  std::vector<std::size_t> back(weights_.starts_.begin(), weights_.starts_.end() - 1);
+  for (int node = 0; node < weights_.size(); ++node)
+    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < weights_.end(node); ++edge)
+      values_[edge] = values_[back[static_cast<std::size_t>(weights_.neighbors_[edge])]++] =
+          value(weights_.weights_[edge]);
+  for (int node = 0; node < weights_.size(); ++node) {
+    const int place = place_[static_cast<std::size_t>(node)];
+    if (place < 0) continue;
+    double* const row = &rows_[static_cast<std::size_t>(place) * columns_];
+    for (std::size_t edge = weights_.begin(node); edge < weights_.end(node); ++edge)
+      row[static_cast<std::size_t>(weights_.neighbors_[edge])] = values_[edge];
   }
 }
 
-void PathSums::multiply_matrix(double (*value)(double), const std::function<void(const PathSum&)>& visit) {
-  const auto rows = static_cast<std::size_t>(padded(weights_.size()));
-  const auto at = [&](int row, int column) -> double& {
-    return matrix_[static_cast<std::size_t>(row) * rows + static_cast<std::size_t>(column)];
-  };
-  AlignedColumn strip(kStrip * rows);
-  for (int node = 0; node < weights_.size(); ++node)
-    weights_.for_edges(node, [&](int other, double weight) {
-      if (other > node) at(node, other) = at(other, node) = value(weight);
-    });
+void PathSums::visit(double (*value)(double), const std::function<void(const PathSum&)>& visit) {
+  evaluate(value);
+  AlignedColumn strip(static_cast<std::size_t>(kStrip * row_count_));
+  std::vector<double> scattered(columns_);
   std::vector<std::size_t> back(weights_.starts_.begin(), weights_.starts_.end() - 1);
   for (int node = 0; node < weights_.size(); ++node) {
-    const double* const products = &strip[static_cast<std::size_t>(node) % kStrip * rows];
-    if (static_cast<std::size_t>(node) % kStrip == 0)
-      HWY_DYNAMIC_DISPATCH(multiply_strip)(matrix_.data(), static_cast<int>(rows), node, strip.data());
-    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < weights_.end(node); ++edge) {
-      const int other = weights_.neighbors_[edge];
-      visit({node, other, edge, back[static_cast<std::size_t>(other)]++,
-             at(node, other) * products[static_cast<std::size_t>(other)]});
+    const int place = place_[static_cast<std::size_t>(node)];
+    const std::size_t first = weights_.begin(node), last = weights_.end(node);
+    if (place >= 0 && place % kStrip == 0)
+      HWY_DYNAMIC_DISPATCH(multiply_strip)(rows_.data(), row_count_, columns_, place, strip.data());
+    const double* const products = strip.data() + place % kStrip * row_count_;
+    const double* const row = place >= 0 ? row_of(node) : scattered.data();
+    for (std::size_t edge = first; place < 0 && edge < last; ++edge)
+      scattered[static_cast<std::size_t>(weights_.neighbors_[edge])] = values_[edge];
+    for (std::size_t edge = back[static_cast<std::size_t>(node)]; edge < last; ++edge) {
+      const int other = weights_.neighbors_[edge], column = place_[static_cast<std::size_t>(other)];
+      double sum;
+      if (place >= 0 && column >= 0)
+        sum = products[column];
+      else
+        sum = column >= 0 ? sum_of_products(node, row_of(other)) : sum_of_products(other, row);
+      visit({node, other, edge, back[static_cast<std::size_t>(other)]++, values_[edge] * sum});
     }
+    for (std::size_t edge = first; place < 0 && edge < last; ++edge)
+      scattered[static_cast<std::size_t>(weights_.neighbors_[edge])] = 0;
   }
 }
 

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <utility>
 #include <vector>
 
 #include "grouping/graph/bit_graph.h"
@@ -55,8 +54,8 @@ class EdgeWeights {
 };
 
 /// V_ij sum_k V_ik V_jk over the common neighbours of the nodes of each edge, V a function of the weights, in the order of the edges.
-/// Sums of eight: those of k = 0, 8, 16, ..., of k = 1, 9, 17, ... and so on, then of these. Graphs with an edge for one pair
-/// in eight or more are multiplied as whole matrices, with the same sums.
+/// Sums of eight: those of k = 0, 8, 16, ..., of k = 1, 9, 17, ... and so on, then of these. The rows of nodes that are joined to
+/// one in eight or more are multiplied as a matrix, with the same sums.
 class PathSums {
  public:
   /// `weights` must outlive it; they may change, their graph may not.
@@ -64,7 +63,8 @@ class PathSums {
 
   /// Bytes for so many nodes and ordered pairs of them that are connected.
   static double memory(int nodes, double pairs) {
-    return nodes <= kMostInMatrix ? 8.0 * (nodes + kStrip) * padded(nodes) : 8 * pairs + 24.0 * nodes;
+    const double matrix = nodes <= kMostInMatrix ? 8.0 * (nodes + kStrip) * (padded(nodes) + kStrip) : 0;
+    return 8 * pairs + 24.0 * nodes + matrix;
   }
 
   /// An edge, the smaller node first, and its two places among the weights.
@@ -77,13 +77,22 @@ class PathSums {
   void visit(double (*value)(double), const std::function<void(const PathSum&)>& visit);
 
  private:
-  static constexpr int kMostInMatrix = 2048;  ///< nodes of graphs that are multiplied as matrices
-  static constexpr std::size_t kStrip = 4;    ///< rows that are multiplied together
+  static constexpr int kMostInMatrix = 4096;  ///< nodes of graphs of which rows are multiplied as a matrix
+  static constexpr int kStrip = 4;            ///< rows that are multiplied together
 
-  void multiply_matrix(double (*value)(double), const std::function<void(const PathSum&)>& visit);
+  void evaluate(double (*value)(double));
+  const double* row_of(int node) const {
+    return &rows_[static_cast<std::size_t>(place_[static_cast<std::size_t>(node)]) * columns_];
+  }
+  double sum_of_products(int node, const double* factors) const;
 
   const EdgeWeights& weights_;
-  AlignedColumn matrix_;  ///< V, kept from sum to sum: memory that is new takes longer than the product
+  Indices place_;        ///< of each node among the rows of the matrix, or -1
+  std::size_t columns_;  ///< of the matrix
+  int row_count_ = 0;    ///< a multiple of kStrip
+  std::vector<double>
+      values_;  ///< V of every edge. All is kept from sum to sum: memory that is new takes longer than the product
+  AlignedColumn rows_;  ///< the matrix: V of the nodes that are joined to many
 };
 
 }  // namespace corral

@@ -97,15 +97,14 @@ class Enumeration {
   /// False if there is no candidate.
   static bool choose_branches(const BitGraph& subgraph, Level& level) {
     int pivot = -1, most = -1;
+    const int words = subgraph.words();
     Word any = 0;
     for (std::size_t word = 0; word < level.candidates.size(); ++word) {
       any |= level.candidates[word];
       const Word either = level.candidates[word] | level.excluded[word];
       BitGraph::for_bits(&either, 1, [&](int bit) {
         const int node = 64 * static_cast<int>(word) + bit;
-        int count = 0;
-        for (std::size_t k = 0; k < level.candidates.size(); ++k)
-          count += static_cast<int>(hwy::PopCount(level.candidates[k] & subgraph.neighbors(node)[k]));
+        const int count = BitGraph::count_in_both(level.candidates.data(), subgraph.neighbors(node), words);
         if (count > most) most = count, pivot = node;
       });
     }
