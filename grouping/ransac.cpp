@@ -35,6 +35,7 @@ PoseRule rule_of(const RansacOptions& options) {
 struct DrawnTriple {
   Triple rows{};
   int iteration = 0;
+  TripleFilter::Support support{};
 };
 
 class Search {
@@ -86,7 +87,7 @@ class Search {
     while (drawn_ < kFloatLanes && iteration_ < last_iteration_) {
       const Triple triple = draw_one(random);
       const int iteration = iteration_++;
-      if (is_rigid(triple)) triples_[drawn_++] = {triple, iteration};
+      if (is_rigid(triple)) triples_[drawn_++] = {triple, iteration, {}};
     }
   }
 
@@ -98,7 +99,9 @@ class Search {
   /// Those of the triples drawn that can win are fitted, eight together.
   void sift() {
     for (unsigned possible = possible_triples() & ((1u << drawn_) - 1); possible != 0; possible &= possible - 1) {
-      sifted_[sifted_count_++] = triples_[hwy::Num0BitsBelowLS1Bit_Nonzero32(possible)];
+      const auto lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(possible));
+      sifted_[sifted_count_] = triples_[lane];
+      sifted_[sifted_count_++].support = filter_.support(lane);
       if (sifted_count_ == kLanes) judge();
     }
   }
@@ -129,10 +132,16 @@ class Search {
     const int count = std::exchange(sifted_count_, 0);
     for (int lane = 0; lane < count; ++lane) {
       if (!motions_.is_usable(lane) || sifted_[lane].iteration >= last_iteration_) continue;
-      if (!choice_.needs_all() && count_near(support_.rows(), filters.get(lane), hopeless()) <= hopeless()) continue;
+      if (!choice_.needs_all() && !can_win(filters, lane)) continue;
       offer(motions_.get(lane), sifted_[lane].iteration);
     }
     if (hopeless() > best && is_worth_pruning()) support_.exceed(hopeless(), choice_.best_residuals());
+  }
+
+  bool can_win(const LaneFilters& filters, int lane) const {
+    const TripleFilter::Support& support = sifted_[lane].support;
+    const Slab slab{support.axis, support.most, filters.within[lane]};
+    return count_near(support_.rows(), filters.get(lane), slab, hopeless()) > hopeless();
   }
 
   /// Whether matches that few others keep their distance to are looked for: in time quadratic in their number.

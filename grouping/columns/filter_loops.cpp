@@ -91,28 +91,42 @@ HWY_FLATTEN void count_consistent(const ConsistencyFilter& filter, int* counts) 
   }
 }
 
-HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless) {
-  constexpr int kStretch = 4 * kFloatLanes;  // rows between two checks of the count
+/// The components of the residual in the order in which they follow the axis of the slab.
+template <bool kInSlab>
+HWY_INLINE int count_near_rows(const FilterTable& table, const PoseFilter& pose, const Slab& slab, int hopeless) {
+  constexpr int kStretch = (kInSlab ? 16 : 4) * kFloatLanes;  // rows between two checks of the counts
   const Columns columns(table);
   const int end = table.padded_rows();
-  int near = 0;
-  const Floats one = Floats::fill(1), limit = Floats::fill(pose.possible);
-  Floats r[9], t[3];
-  for (int i = 0; i < 9; ++i) r[i] = Floats::fill(pose.rotation[i]);
-  for (int i = 0; i < 3; ++i) t[i] = Floats::fill(pose.translation[i]);
+  int near = 0, in_slab = 0;
+  const Floats one = Floats::fill(1), limit = Floats::fill(pose.possible), within = Floats::fill(slab.within);
+  Floats r[3][3], t[3];
+  const float* target[3];
+  for (int i = 0; i < 3; ++i) {
+    const int axis = (slab.axis + i) % 3;
+    for (int j = 0; j < 3; ++j) r[i][j] = Floats::fill(pose.rotation[3 * axis + j]);
+    t[i] = Floats::fill(pose.translation[axis]), target[i] = columns.target[axis];
+  }
   for (int first = 0; first < end; first += kStretch) {
-    if (near + table.rows() - first <= hopeless) return hopeless;
-    Floats inside = Floats::fill(0);
+    if (near + table.rows() - first <= hopeless || (kInSlab && near + slab.most - in_slab <= hopeless)) return hopeless;
+    Floats inside = Floats::fill(0), inside_slab = inside;
     for (int row = first; row < end && row < first + kStretch; row += kFloatLanes) {
-      const auto p = Point::load(columns.source, row), q = Point::load(columns.target, row);
-      const Floats x = r[0] * p.x + r[1] * p.y + r[2] * p.z + (t[0] - q.x);
-      const Floats y = r[3] * p.x + r[4] * p.y + r[5] * p.z + (t[1] - q.y);
-      const Floats z = r[6] * p.x + r[7] * p.y + r[8] * p.z + (t[2] - q.z);
+      const auto p = Point::load(columns.source, row);
+      const auto residual = [&](int i) HWY_ATTR {
+        return r[i][0] * p.x + r[i][1] * p.y + r[i][2] * p.z + (t[i] - Floats::load(target[i] + row));
+      };
+      const Floats x = residual(0), y = residual(1), z = residual(2);
+      if (kInSlab) inside_slab = counted(magnitude(x) <= within, inside_slab, one);
       inside = counted(x * x + y * y + z * z <= limit, inside, one);
     }
     near += total(inside);
+    if (kInSlab) in_slab += total(inside_slab);
   }
   return near;
+}
+
+HWY_FLATTEN int count_near(const FilterTable& table, const PoseFilter& pose, const Slab& slab, int hopeless) {
+  return 2 * slab.most < table.rows() ? count_near_rows<true>(table, pose, slab, hopeless)
+                                      : count_near_rows<false>(table, pose, slab, hopeless);
 }
 
 HWY_FLATTEN void add_near(const FilterTable& table, int first, int last, const PoseFilter (&poses)[kPoseTile],
@@ -278,8 +292,12 @@ void add_near(const FilterTable& table, int first, int last, const PoseFilter (&
   HWY_DYNAMIC_DISPATCH(add_near)(table, first, last, poses, counts);
 }
 
+int count_near(const FilterTable& table, const PoseFilter& pose, const Slab& slab, int hopeless) {
+  return HWY_DYNAMIC_DISPATCH(count_near)(table, pose, slab, hopeless);
+}
+
 int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless) {
-  return HWY_DYNAMIC_DISPATCH(count_near)(table, pose, hopeless);
+  return count_near(table, pose, {0, table.rows(), -1}, hopeless);
 }
 
 void compare_ratios(const FilterTable& table, const SimilarityFilter& filter, int block, std::uint8_t* certain,

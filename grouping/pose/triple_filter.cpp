@@ -18,6 +18,8 @@ HWY_INLINE Lanes all(double number) { return Lanes::fill(number); }
 
 struct Vector {
   Lanes x, y, z;
+
+  HWY_INLINE Lanes on(int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 HWY_INLINE Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HWY_INLINE Vector operator*(const Vector& a, Lanes factor) { return {a.x * factor, a.y * factor, a.z * factor}; }
@@ -54,30 +56,31 @@ struct Flat {
 };
 
 HWY_FLATTEN void set_planes(const LaneTriangles& source, const LaneTriangles& target, const double (&origin)[4],
-                            double per_unit, int first, TripleFilter::Planes& planes) {
+                            int axis, double per_unit, int first, TripleFilter::Planes& planes) {
   const auto p = Flat::of(source), q = Flat::of(target);
+  const Lanes q1 = q.e1.on(axis), q2 = q.e2.on(axis), q3 = q.e3.on(axis);
   const Lanes third = all(1.0 / 3);
   const Lanes p_sum = p.along + p.x, q_sum = (q.along + q.x) * third;
   const Lanes c = p.along * q.along + p.x * q.x - p_sum * q_sum + p.y * q.y * all(2.0 / 3);
   const Lanes s = p.x * q.y - p_sum * q.y * third - p.y * q.x + p.y * q_sum;
   const Lanes per_sum = all(1) / square_root(c * c + s * s), cosine = c * per_sum, sine = s * per_sum;
-  const Lanes f1 = cosine * q.e1.x + sine * q.e2.x, f2 = cosine * q.e2.x - sine * q.e1.x;
-  const Vector normal = {f1 * p.e1.x + f2 * p.e2.x + q.e3.x * p.e3.x, f1 * p.e1.y + f2 * p.e2.y + q.e3.x * p.e3.y,
-                         f1 * p.e1.z + f2 * p.e2.z + q.e3.x * p.e3.z};
+  const Lanes f1 = cosine * q1 + sine * q2, f2 = cosine * q2 - sine * q1;
+  const Vector normal = {f1 * p.e1.x + f2 * p.e2.x + q3 * p.e3.x, f1 * p.e1.y + f2 * p.e2.y + q3 * p.e3.y,
+                         f1 * p.e1.z + f2 * p.e2.z + q3 * p.e3.z};
   const Vector mean = p.mean - Vector{all(origin[0]), all(origin[1]), all(origin[2])};
   normal.x.store(planes.normal[0] + first);
   normal.y.store(planes.normal[1] + first);
   normal.z.store(planes.normal[2] + first);
-  ((q.mean.x - all(origin[3]) - dot(normal, mean)) * all(per_unit)).store(planes.offset + first);
+  ((q.mean.on(axis) - all(origin[3]) - dot(normal, mean)) * all(per_unit)).store(planes.offset + first);
 }
 
-HWY_FLATTEN unsigned possible(const FilterTable& table, const TripleFilter::Planes& planes, float reach, int hopeless,
-                              int looked_at) {
+HWY_FLATTEN unsigned possible(const FilterTable& table, float reach, int hopeless, int looked_at,
+                              TripleFilter::Planes& planes) {
   constexpr int kStretch = 16;  // rows between two looks at the counts
   const Floats one = Floats::fill(1), most = Floats::fill(static_cast<float>(table.rows() - 1 - hopeless));
   const Floats near = Floats::fill(reach), offset = Floats::load(planes.offset);
   const Floats n[3] = {Floats::load(planes.normal[0]), Floats::load(planes.normal[1]), Floats::load(planes.normal[2])};
-  const float *x = table.source(0), *y = table.source(1), *z = table.source(2), *to = table.target(0);
+  const float *x = table.source(0), *y = table.source(1), *z = table.source(2), *to = table.target(planes.axis);
   const auto counted = [&](Floats missed, int row) HWY_ATTR {
     const Floats residual = n[0] * Floats::fill(x[row]) + n[1] * Floats::fill(y[row]) + n[2] * Floats::fill(z[row]) +
                             (offset - Floats::fill(to[row]));
@@ -94,6 +97,7 @@ HWY_FLATTEN unsigned possible(const FilterTable& table, const TripleFilter::Plan
     }
     can = bits(missed + missed_too <= most);
   }
+  (Floats::fill(static_cast<float>(table.rows())) - (missed + missed_too)).store(planes.most);
   return can;
 }
 
@@ -115,6 +119,8 @@ HWY_FLATTEN void set_filters(const FilterTable& table, double tolerance, const L
   const auto or_blind = [&](Lanes lanes) HWY_ATTR { return select(error < most, lanes, zero); };
   for (int i = 0; i < 9; ++i) or_blind(number(i)).store(poses.rotation[i]);
   for (int axis = 0; axis < 3; ++axis) or_blind(moved[axis]).store(poses.translation[axis]);
+  (select(error < most, all(std::min(tolerance / table.unit(), 8.0)) - error, all(-1)) * all(1 - 0x1p-20))
+      .store(poses.within);
   const Lanes limit = select(error < most, all(std::min(tolerance / table.unit(), 0x1p40)) + error, all(0x1p40));
   (limit * all(1 + 0x1p-20)).store(poses.reach);
   (limit * limit * all(1 + 0x1p-20)).store(poses.possible);
@@ -132,7 +138,8 @@ HWY_EXPORT(possible);
 HWY_EXPORT(set_filters);
 
 TripleFilter::TripleFilter(const FilterTable& table, double tolerance, double smallest_area)
-    : source_origin_(table.source_origin()), target_origin_(table.target_origin()(0)), unit_(table.unit()), planes_{} {
+    : source_origin_(table.source_origin()), target_origin_(table.target_origin()), unit_(table.unit()), planes_{} {
+  std::fill_n(planes_.most, kFloatLanes, 0x1p29F);  // before the first call nothing is known
   const double far = table.source_origin().lpNorm<1>() + table.target_origin().lpNorm<1>();
   const double error = 0x1p-16 + 0x1p-45 * (far / unit_ + 4) + 0x1p-40 * unit_ * (unit_ / smallest_area);
   reach_ = static_cast<float>((std::min(tolerance / unit_, 8.0) + error) * (1 + 0x1p-20));
@@ -140,12 +147,18 @@ TripleFilter::TripleFilter(const FilterTable& table, double tolerance, double sm
 }
 
 void TripleFilter::set(const LaneTriangles& source, const LaneTriangles& target, int first) {
-  const double origin[4] = {source_origin_(0), source_origin_(1), source_origin_(2), target_origin_};
-  HWY_DYNAMIC_DISPATCH(set_planes)(source, target, origin, 1 / unit_, first, planes_);
+  const double origin[4] = {source_origin_(0), source_origin_(1), source_origin_(2), target_origin_(axis_)};
+  planes_.axis = axis_;
+  HWY_DYNAMIC_DISPATCH(set_planes)(source, target, origin, axis_, 1 / unit_, first, planes_);
 }
 
-unsigned TripleFilter::possible(const FilterTable& rows, int hopeless, int looked_at) const {
-  return HWY_DYNAMIC_DISPATCH(possible)(rows, planes_, reach_, hopeless, looked_at);
+unsigned TripleFilter::possible(const FilterTable& rows, int hopeless, int looked_at) {
+  const unsigned left = HWY_DYNAMIC_DISPATCH(possible)(rows, reach_, hopeless, looked_at, planes_);
+  if (trials_ < kTrials) {
+    left_on_[planes_.axis] += hwy::PopCount(left);
+    axis_ = ++trials_ < kTrials ? trials_ % 3 : static_cast<int>(std::min_element(left_on_, left_on_ + 3) - left_on_);
+  }
+  return left;
 }
 
 LaneFilters::LaneFilters(const FilterTable& table, const LaneMotions& motions, double tolerance) {

@@ -50,6 +50,12 @@ int agreeing(const CorrespondenceSet& matches, const RigidTransform& pose) {
   return count;
 }
 
+/// Rows whose residual on this axis is at most so many units.
+int near_plane(const CorrespondenceSet& matches, const RigidTransform& pose, int axis, double most) {
+  const Points residuals = pose.apply(matches.source_points) - matches.target_points;
+  return static_cast<int>((residuals.col(axis).array().abs() <= most).count());
+}
+
 /// Sixteen triples with their motions.
 struct Sixteen {
   LaneTriangles source[2], target[2];
@@ -68,7 +74,7 @@ struct Sixteen {
 };
 
 TEST(TripleFilter, NoTripleWithEnoughRowsIsDropped) {
-  int dropped = 0, usable = 0;
+  int dropped = 0, usable = 0, ended = 0;
   for (const std::int64_t each : available_targets()) {
     const ForcedTarget forced(each);
     int number = 0;
@@ -84,16 +90,27 @@ TEST(TripleFilter, NoTripleWithEnoughRowsIsDropped) {
         for (int k = 0; k < kFloatLanes; ++k) {
           if (!drawn.motions[k / kLanes].is_usable(k % kLanes)) continue;
           const int count = agreeing(matches, drawn.motions[k / kLanes].get(k % kLanes));
+          const LaneFilters filters(table, drawn.motions[k / kLanes], tolerance);
           for (const int looked_at : {4, matches.size()}) {
             EXPECT_TRUE(filter.possible(table, count - 1, looked_at) >> k & 1);
+            const TripleFilter::Support support = filter.support(k);
+            EXPECT_GE(support.most, count);
+            ended += support.most < matches.size() / 2;
+            const Slab slab{support.axis, support.most, filters.within[k % kLanes]};
+            EXPECT_GE(count_near(table, filters.get(k % kLanes), slab, count - 1), count);
             dropped += (filter.possible(table, matches.size() / 2, looked_at) >> k & 1) == 0;
           }
+          filter.possible(table, -1, matches.size());
+          EXPECT_GE(filter.support(k).most,
+                    near_plane(matches, drawn.motions[k / kLanes].get(k % kLanes), filter.support(k).axis,
+                               0.9999 * table.unit() * static_cast<double>(filters.within[k % kLanes])));
           ++usable;
         }
       }
     }
   }
   EXPECT_GT(dropped, usable / 4);
+  EXPECT_GT(ended, usable / 4);
 }
 
 TEST(TripleFilter, IsNotSharpWhereTheExtentIsOutOfProportion) {
