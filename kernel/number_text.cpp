@@ -2,6 +2,7 @@
 #include "kernel/number_text.h"
 
 #include <charconv>
+#include <cmath>
 
 namespace corral {
 namespace {
@@ -32,7 +33,9 @@ std::optional<Number> parse_whole(std::string_view text) {
 
 std::string to_text(double value) {
   char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+  const bool is_count = value == std::floor(value) && std::abs(value) < 1e7;
+  const auto result = is_count ? std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed)
+                               : std::to_chars(buffer, buffer + sizeof buffer, value);
   return std::string(buffer, result.ptr);
 }
 

@@ -8,7 +8,8 @@
 
 namespace corral {
 
-/// The shortest decimal text that reads back as the same double; "nan", "inf", "-inf" for what is not finite.
+/// The shortest decimal text that reads back as the same double, that of whole numbers below 10^7 in digits alone; "nan", "inf",
+/// "-inf" for what is not finite.
 std::string to_text(double value);
 
 /// The whole text as a number, independent of the locale; a leading '+' is accepted. Absent if any character is left

@@ -60,6 +60,11 @@ TEST(NumberText, IsShortest) {
   EXPECT_EQ(to_text(3), "3");
   EXPECT_EQ(to_text(0), "0");
   EXPECT_EQ(to_text(1.0 / 3), "0.3333333333333333");
+  EXPECT_EQ(to_text(100000), "100000");
+  EXPECT_EQ(to_text(-2000000), "-2000000");
+  EXPECT_EQ(to_text(-0.0), "-0");
+  EXPECT_EQ(to_text(1e7), "1e+07");
+  EXPECT_EQ(to_text(1e-5), "1e-05");
   EXPECT_EQ(to_text(std::nan("")), "nan");
   EXPECT_EQ(to_text(HUGE_VAL), "inf");
   EXPECT_EQ(to_text(-HUGE_VAL), "-inf");
