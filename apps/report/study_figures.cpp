@@ -82,11 +82,14 @@ bool has_value(const PanelSeries& series) {
   return std::any_of(series.values.begin(), series.values.end(), [](const PanelValue& value) { return value.value; });
 }
 
-/// Drops bounds, or everything, without a value; true if anything is left.
+/// Drops series without a value; true if any is left.
 bool keep_drawn(Panel& panel) {
-  const auto is_empty_bound = [](const PanelSeries& series) { return is_bound(series.method) && !has_value(series); };
-  panel.series.erase(std::remove_if(panel.series.begin(), panel.series.end(), is_empty_bound), panel.series.end());
-  return std::any_of(panel.series.begin(), panel.series.end(), has_value);
+  for (auto i = static_cast<std::ptrdiff_t>(panel.series.size()) - 1; i >= 0; --i) {
+    if (has_value(panel.series[static_cast<std::size_t>(i)])) continue;
+    panel.series.erase(panel.series.begin() + i);
+    for (PanelCount& count : panel.series_counts) count.cells.erase(count.cells.begin() + i);
+  }
+  return !panel.series.empty();
 }
 
 std::string pairs_note(const ExperimentInfo& info) {
@@ -114,13 +117,16 @@ Panel level_panel(const ExperimentInfo& info, const SummaryRows& rows, const Mea
     panel.series.push_back(series);
     empty.cells.push_back(std::to_string(count));
   }
-  for (const std::string& level : panel.levels)
-    if (!info.methods.empty()) {
-      const SummaryRow& row = *rows.at({level, info.methods[0]});
-      pairs.cells.push_back(std::to_string(row.pairs));
-      excluded.cells.push_back(std::to_string(row.excluded));
-      misfit.cells.push_back(std::to_string(row.misfit));
+  for (const std::string& level : panel.levels) {
+    SummaryRow most;  // methods that do not apply to a pair do not count it
+    for (const std::string& method : info.methods) {
+      const SummaryRow& row = *rows.at({level, method});
+      if (row.pairs + row.excluded + row.misfit > most.pairs + most.excluded + most.misfit) most = row;
     }
+    pairs.cells.push_back(std::to_string(most.pairs));
+    excluded.cells.push_back(std::to_string(most.excluded));
+    misfit.cells.push_back(std::to_string(most.misfit));
+  }
   panel.level_counts = {pairs, excluded};
   if (std::any_of(misfit.cells.begin(), misfit.cells.end(), [](const auto& cell) { return cell != "0"; }))
     panel.level_counts.push_back(misfit);

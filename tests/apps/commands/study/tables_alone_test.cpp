@@ -119,6 +119,8 @@ TEST_F(TablesAlone, OfCoordinatesAloneHaveAReportToo) {
   const Outcome outcome = place_.corral("report run -o report");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(place_.text("report/data/small-b3r-success-in-time.csv"), HasSubstr("\"1 s\",4,"));
+  const std::string table = place_.text("report/tables/small-b3r-f1.tex");
+  EXPECT_THAT(table, AllOf(HasSubstr("{pairs} & 2 & 2 & 2 \\\\"), HasSubstr("{RANSAC}"), Not(HasSubstr("{SS}"))));
 }
 
 TEST_F(TablesAlone, AreBinnedByTheirShareOfCorrectMatches) {
