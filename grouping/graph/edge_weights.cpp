@@ -121,7 +121,7 @@ void PathSums::visit(double (*value)(double), const std::function<void(const Pat
     const std::size_t first = weights_.begin(node), last = weights_.end(node);
     if (place >= 0 && place % kStrip == 0)
       HWY_DYNAMIC_DISPATCH(multiply_strip)(rows_.data(), row_count_, columns_, place, strip.data());
-    const double* const products = strip.data() + place % kStrip * row_count_;
+    const double* const products = strip.data() + std::max(0, place) % kStrip * row_count_;
     const double* const row = place >= 0 ? row_of(node) : scattered.data();
     for (std::size_t edge = first; place < 0 && edge < last; ++edge)
       scattered[static_cast<std::size_t>(weights_.neighbors_[edge])] = values_[edge];

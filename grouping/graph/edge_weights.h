@@ -87,12 +87,12 @@ class PathSums {
   double sum_of_products(int node, const double* factors) const;
 
   const EdgeWeights& weights_;
-  Indices place_;        ///< of each node among the rows of the matrix, or -1
-  std::size_t columns_;  ///< of the matrix
-  int row_count_ = 0;    ///< a multiple of kStrip
-  std::vector<double>
-      values_;  ///< V of every edge. All is kept from sum to sum: memory that is new takes longer than the product
-  AlignedColumn rows_;  ///< the matrix: V of the nodes that are joined to many
+  // Kept from sum to sum: memory that is new takes longer than the product.
+  Indices place_;               ///< of each node among the rows of the matrix, or -1
+  std::size_t columns_;         ///< of the matrix
+  int row_count_ = 0;           ///< a multiple of kStrip
+  std::vector<double> values_;  ///< V of every edge
+  AlignedColumn rows_;          ///< the matrix: V of the nodes that are joined to many
 };
 
 }  // namespace corral
