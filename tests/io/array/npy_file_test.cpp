@@ -101,6 +101,39 @@ TEST(NpzFile, StoredAndDeflatedMembers) {
   EXPECT_THAT(complaint(content, "c"), HasSubstr("has no array c, expected one of 'a', 'b'"));
 }
 
+/// An archive whose sizes and offsets all stand where those of 64 bits do, behind a field that means something else.
+std::string large_archive(const std::string& name, const std::string& content) {
+  const std::string none = little(0xFFFFFFFF, 4),
+                    common = little(0, 2) + little(0, 4) + little(checksum_of(content), 4);
+  const std::string header =
+      "PK\3\4" + little(45, 2) + little(0, 2) + common + none + none + little(name.size(), 2) + little(0, 2) + name;
+  const std::string sizes = little(0x5455, 2) + little(3, 2) + "abc" + little(1, 2) + little(24, 2) +
+                            little(content.size(), 8) + little(content.size(), 8) + little(0, 8);
+  const std::string list = "PK\1\2" + little(45, 2) + little(45, 2) + little(0, 2) + common + none + none +
+                           little(name.size(), 2) + little(sizes.size(), 2) + little(0, 8) + little(0, 2) + none +
+                           name + sizes;
+  const std::size_t listed_at = header.size() + content.size(), end = listed_at + list.size();
+  const std::string record = "PK\6\6" + little(44, 8) + little(45, 2) + little(45, 2) + little(0, 8) + little(1, 8) +
+                             little(1, 8) + little(list.size(), 8) + little(listed_at, 8);
+  return header + content + list + record + "PK\6\7" + little(0, 4) + little(end, 8) + little(1, 4) + "PK\5\6" +
+         little(0, 4) + little(0xFFFF, 2) + little(0xFFFF, 2) + none + none + little(0, 2);
+}
+
+TEST(NpzFile, SizesOf64Bits) {
+  const std::string content = large_archive("a.npy", npy("(2, 3)", kSix));
+  EXPECT_THAT(npz_names("a.npz", content), ElementsAre("a"));
+  EXPECT_EQ(parse_npz("a.npz", content, "a").rows, six());
+  for (std::size_t length = 0; length < content.size(); ++length)
+    EXPECT_NE(complaint(content.substr(0, length), "a"), "nothing") << length;
+  for (const std::uint64_t far : {std::uint64_t{content.size()}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    std::string record = content, member = content;
+    record.replace(content.rfind("PK\6\7") + 8, 8, little(far, 8));
+    EXPECT_THAT(complaint(record, "a"), HasSubstr("too short for the end of a large archive"));
+    member.replace(content.rfind("PK\6\6") - 8, 8, little(far, 8));
+    EXPECT_THAT(complaint(member, "a"), HasSubstr("too short for a member of the archive"));
+  }
+}
+
 TEST(NpzFile, DamagedAndHostileArchivesAreRefused) {
   const std::string array = npy("(2, 3)", kSix);
   const std::string good = zip({{"a.npy", array}});
@@ -120,6 +153,11 @@ TEST(NpzFile, DamagedAndHostileArchivesAreRefused) {
   std::string method = good;
   method[method.rfind("PK\1\2") + 10] = 12;
   EXPECT_THAT(complaint(method, "a"), HasSubstr("method 12"));
+  std::string encrypted = good, sizes = good;
+  encrypted[encrypted.rfind("PK\1\2") + 8] = 1;
+  EXPECT_THAT(complaint(encrypted, "a"), HasSubstr("is encrypted"));
+  sizes.replace(sizes.rfind("PK\1\2") + 24, 4, little(array.size() - 1, 4));
+  EXPECT_THAT(complaint(sizes, "a"), HasSubstr("its two sizes differ"));
 }
 
 }  // namespace
