@@ -35,7 +35,7 @@ PoseRule rule_of(const RansacOptions& options) {
 struct DrawnTriple {
   Triple rows{};
   int iteration = 0;
-  TripleFilter::Support support{};
+  Slab slab{};
 };
 
 class Search {
@@ -101,7 +101,7 @@ class Search {
     for (unsigned possible = possible_triples() & ((1u << drawn_) - 1); possible != 0; possible &= possible - 1) {
       const auto lane = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero32(possible));
       sifted_[sifted_count_] = triples_[lane];
-      sifted_[sifted_count_++].support = filter_.support(lane);
+      sifted_[sifted_count_++].slab = filter_.slab(lane);
       if (sifted_count_ == kLanes) judge();
     }
   }
@@ -139,8 +139,8 @@ class Search {
   }
 
   bool can_win(const LaneFilters& filters, int lane) const {
-    const TripleFilter::Support& support = sifted_[lane].support;
-    const Slab slab{support.axis, support.most, filters.within[lane]};
+    Slab slab = sifted_[lane].slab;
+    slab.within = filters.within[lane];
     return count_near(support_.rows(), filters.get(lane), slab, hopeless()) > hopeless();
   }
 

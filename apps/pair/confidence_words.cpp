@@ -25,8 +25,8 @@ std::string signal_words(std::size_t signal, double value) {
       return fixed(std::exp(value), 1) + " times as many matches agree with it as with any other pose";
     case 3: {
       const double uncertainty_pr = std::exp(-value) - 0.01;
-      return uncertainty_pr > 99 ? "too few matches fix it"
-                                 : "the matches fix it to within " + fixed(uncertainty_pr, 1) + " pr";
+      return uncertainty_pr > 99 ? "too few matches to determine it"
+                                 : "the matches determine it to within " + fixed(uncertainty_pr, 1) + " pr";
     }
     case 4:
       return percent(value) + " of the groupers find it";

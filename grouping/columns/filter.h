@@ -125,4 +125,11 @@ struct PoseFilter {
   float certain;   ///< certain if it is below this
 };
 
+/// What is known of one component of the residuals under a pose: no more than `most` rows are in agreement, among which those whose
+/// computed component is at most `within` are counted, in agreement or not.
+struct Slab {
+  int axis = 0, most = 0;
+  float within = -1;
+};
+
 }  // namespace corral

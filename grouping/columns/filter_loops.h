@@ -18,13 +18,6 @@ void count_consistent(const ConsistencyFilter& filter, int* counts);
 /// there are no more.
 int count_near(const FilterTable& table, const PoseFilter& pose, int hopeless);
 
-/// What is known of one component of the residuals under a pose: no more than `most` rows are in agreement, among which those whose
-/// computed component is at most `within` are counted, in agreement or not.
-struct Slab {
-  int axis = 0, most = 0;
-  float within = -1;
-};
-
 /// The same, ended sooner where the slab holds few rows.
 int count_near(const FilterTable& table, const PoseFilter& pose, const Slab& slab, int hopeless);
 

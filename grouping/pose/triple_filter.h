@@ -30,11 +30,8 @@ class TripleFilter {
   /// rows of the table. At most `looked_at` are looked at, and no more once that is certain of all.
   unsigned possible(const FilterTable& rows, int hopeless, int looked_at);
 
-  /// Of a triple of the latest answer: what is known of its motion.
-  struct Support {
-    int axis, most;  ///< as in Slab
-  };
-  Support support(int lane) const { return {planes_.axis, static_cast<int>(planes_.most[lane])}; }
+  /// What is known of the motion of a triple of the latest answer; `within` is that of LaneFilters.
+  Slab slab(int lane) const { return {planes_.axis, static_cast<int>(planes_.most[lane]), -1}; }
 
   struct Planes {
     int axis;
@@ -58,7 +55,9 @@ class TripleFilter {
 /// The filters of the eight poses of triangles that were fitted together: as PoseFilter, bounds rounded up a little more.
 struct LaneFilters {
   float rotation[9][kLanes], translation[3][kLanes], reach[kLanes], possible[kLanes];
-  float within[kLanes];  ///< a component of a residual that is no larger than this is one for TripleFilter too
+  /// The tolerance less the error of these filters: a component within it is within the tolerance in double, and therefore within
+  /// the reach of TripleFilter, which is the tolerance and the error of that.
+  float within[kLanes];
 
   LaneFilters() = default;
   LaneFilters(const FilterTable& table, const LaneMotions& motions, double tolerance);

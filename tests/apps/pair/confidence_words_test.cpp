@@ -34,14 +34,14 @@ TEST(ConfidenceWords, GiveTheNumbersThatTheSignalsWereMadeFrom) {
   EXPECT_EQ(words[0], "40 matches agree with it");
   EXPECT_EQ(words[1], "40 % of the matches agree with it");
   EXPECT_EQ(words[2], "4.1 times as many matches agree with it as with any other pose");
-  EXPECT_EQ(words[3], "the matches fix it to within 0.0 pr");
+  EXPECT_EQ(words[3], "the matches determine it to within 0.0 pr");
   EXPECT_EQ(words[4], "25 % of the groupers find it");
   EXPECT_EQ(words[5], "71 % of the source lies on the target");
   EXPECT_EQ(words[6], "the surfaces are 0.21 pr apart where they overlap");
   EXPECT_EQ(words[7], "3 % of the points are in front of what the other sensor saw");
   EXPECT_EQ(words[8], "the dense refinement moved it by 1.2 pr");
   EXPECT_EQ(signal_words(0, std::log(2.0)), "1 match agrees with it");
-  EXPECT_EQ(signal_words(3, -std::log(100.01)), "too few matches fix it") << "fewer than four";
+  EXPECT_EQ(signal_words(3, -std::log(100.01)), "too few matches to determine it") << "fewer than four";
 }
 
 TEST(ConfidenceWords, SayNothingForAPoseThatNothingSpeaksFor) {

@@ -93,16 +93,16 @@ TEST(TripleFilter, NoTripleWithEnoughRowsIsDropped) {
           const LaneFilters filters(table, drawn.motions[k / kLanes], tolerance);
           for (const int looked_at : {4, matches.size()}) {
             EXPECT_TRUE(filter.possible(table, count - 1, looked_at) >> k & 1);
-            const TripleFilter::Support support = filter.support(k);
-            EXPECT_GE(support.most, count);
-            ended += support.most < matches.size() / 2;
-            const Slab slab{support.axis, support.most, filters.within[k % kLanes]};
+            Slab slab = filter.slab(k);
+            EXPECT_GE(slab.most, count);
+            ended += slab.most < matches.size() / 2;
+            slab.within = filters.within[k % kLanes];
             EXPECT_GE(count_near(table, filters.get(k % kLanes), slab, count - 1), count);
             dropped += (filter.possible(table, matches.size() / 2, looked_at) >> k & 1) == 0;
           }
           filter.possible(table, -1, matches.size());
-          EXPECT_GE(filter.support(k).most,
-                    near_plane(matches, drawn.motions[k / kLanes].get(k % kLanes), filter.support(k).axis,
+          EXPECT_GE(filter.slab(k).most,
+                    near_plane(matches, drawn.motions[k / kLanes].get(k % kLanes), filter.slab(k).axis,
                                0.9999 * table.unit() * static_cast<double>(filters.within[k % kLanes])));
           ++usable;
         }

@@ -111,6 +111,21 @@ TEST(StudyFigures, TakeTheMeansAsTheyStandAndLeaveGaps) {
   EXPECT_EQ(success.y_axis, "aligned within 5 pr");
 }
 
+TEST(StudyFigures, LeaveOutAGrouperThatAppliesToNothingWithItsCounts) {
+  const Workplace place;
+  put_run(place);
+  StudyFolder run = read_study(place / "run");
+  run.records = {record_of("a", "ss", {}), record_of("a", "gc", {})};
+  run.records[0].status = {MethodState::NotApplicable};
+  run.records[1].selected = 0;
+  const StudyFigures figures = figures_of({run});
+  const Panel& recall = panel_named(figures, "noise-b3r-recall");
+  ASSERT_EQ(recall.series.size(), 1U);
+  EXPECT_EQ(recall.series[0].method, "gc");
+  EXPECT_EQ(recall.series_counts[0].cells, std::vector<std::string>{"1"});
+  EXPECT_EQ(recall.level_counts[0].cells, (std::vector<std::string>{"1", "0"}));
+}
+
 TEST(StudyFigures, CurvesAndBoxesLeaveExcludedUnjudgedAndFailedPairsOut) {
   const Workplace place;
   StudyRecord unjudged = record_of("f", "ss", {});
